@@ -36,8 +36,8 @@ std::vector<std::array<double, N>> points_of(const Doubles& array) {
 }
 
 using Ends = py::array_t<std::uint64_t, py::array::c_style>;
-/// Types, corners and the four other arrays of CellLists, which are empty without polygons and polyhedra.
-using CellArrays = std::tuple<Types, Corners, Ends, Corners, Ends, Ends>;
+/// Types, corners and the six other arrays of CellLists, which are empty without polygons, polyhedra and polytopes.
+using CellArrays = std::tuple<Types, Corners, Ends, Corners, Ends, Ends, Ends, Ends>;
 
 /// What the caller gave, without Python.
 struct MeshArguments {
@@ -90,7 +90,7 @@ std::vector<T> vector_of(const Array& array) {
 
 MeshArguments arguments_of(const CellArrays& arrays, const Doubles& values, const Doubles& times,
                            const std::vector<std::string>& axis_names) {
-  const auto& [types, corners, ends, face_corners, face_ends, face_lists_ends] = arrays;
+  const auto& [types, corners, ends, face_corners, face_ends, face_lists_ends, facet_ends, facet_lists_ends] = arrays;
   MeshArguments mesh{{}, span_of<double>(values), span_of<double>(times), axis_names};
   for (const std::uint8_t type : span_of<std::uint8_t>(types)) mesh.cells.types.push_back(static_cast<CellType>(type));
   mesh.cells.corners = vector_of<Index>(corners);
@@ -98,6 +98,8 @@ MeshArguments arguments_of(const CellArrays& arrays, const Doubles& values, cons
   mesh.cells.face_corners = vector_of<Index>(face_corners);
   mesh.cells.face_ends = vector_of<std::uint64_t>(face_ends);
   mesh.cells.face_lists_ends = vector_of<std::uint64_t>(face_lists_ends);
+  mesh.cells.facet_ends = vector_of<std::uint64_t>(facet_ends);
+  mesh.cells.facet_lists_ends = vector_of<std::uint64_t>(facet_lists_ends);
   return mesh;
 }
 

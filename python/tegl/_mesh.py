@@ -22,14 +22,15 @@ _TYPES = {
     "simplex4": (100, 5), "octahedron": (101, 6), "cell16": (102, 8),
 }
 #: types without a fixed number of corners; in meshio's names a number of corners may follow
-_POLYTOPES = {"polygon": 7, "polyhedron": 42}
+_POLYTOPES = {"polygon": 7, "polyhedron": 42, "polytope": 103}
 #: (dimension, corners) -> the type of cells that are given without one
 _BY_CORNERS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hexahedron", (3, 6): "wedge",
                (3, 5): "pyramid", (4, 5): "simplex4"}
 
 
-#: types, corners, and the other lists of the library's CellLists, which are empty without polygons and polyhedra
-_CellArrays = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+#: types, corners, and the other lists of the library's CellLists, which are empty without polygons, polyhedra and
+#: polytopes
+_CellArrays = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
 def contour_mesh(points, cells=None, values=None, level: float | None = None, *, times=None,
@@ -55,7 +56,8 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
         pairs of a name and such an array, with the names "triangle", "quad", "tetra", "pyramid", "wedge", "hexahedron",
         "pixel" and "voxel". The order of corners is VTK's. Cells must meet in whole faces. Cells of type "polygon" are
         arrays or lists of numbers of points around them; cells of type "polyhedron" are lists of faces, and a face is a
-        list of numbers of points around it. Both have up to 64 corners.
+        list of numbers of points around it. Cells of type "polytope" (N = 4) are lists of facets, and a facet is a list of
+        faces as a polyhedron is; each face is in two facets. All have up to 64 corners.
     values
         #P values; with `times` #T x #P. NaN and masked values are missing: cells there have no contour. For a mesh also
         the name of an array in its `point_data`; none for the only one.
@@ -442,21 +444,27 @@ def _ends_of(rings: Iterable) -> np.ndarray:
 
 
 def _polytope_arrays(name: str, block) -> _CellArrays:
-    """The cells of a block of polygons or polyhedra."""
+    """The cells of a block of polygons, polyhedra or polytopes."""
     number, what = _number_of(name), f"cells of type {name!r}"
     if not _is_list(block):
-        raise TypeError(f"{what} are {type(block).__name__}; expected a list of cells: " +
-                        ("lists of numbers of points" if number == 7 else "lists of faces"))
+        expected = {7: "lists of numbers of points", 42: "lists of faces", 103: "lists of facets"}[number]
+        raise TypeError(f"{what} are {type(block).__name__}; expected a list of cells: {expected}")
+    counts = facet_counts = np.zeros(len(block), dtype=np.uint64)
+    faces, facets, cells = [], [], [np.empty(0, np.uint32)] * len(block)
     if number == 7:
-        rings = _rings_of(what, block)
-        cells, faces, counts = rings, [], np.zeros(len(rings), dtype=np.uint64)
-    else:
+        cells = _rings_of(what, block)
+    elif number == 42:
         lists = [_rings_of(f"faces of {what}", cell) for cell in block]
-        faces = [ring for cell in lists for ring in cell]
-        cells, counts = [np.empty(0, np.uint32)] * len(lists), _ends_of(lists)
+        faces, counts = [ring for cell in lists for ring in cell], _ends_of(lists)
+    else:
+        for cell in block:
+            if not _is_list(cell):
+                raise TypeError(f"{what} have {cell!r} in the place of a cell; expected a list of facets")
+        facets = [_rings_of(f"facets of {what}", facet) for cell in block for facet in cell]
+        faces, facet_counts = [ring for facet in facets for ring in facet], _ends_of(block)
     none = np.empty(0, np.uint32)
     return (np.full(len(cells), number, dtype=np.uint8), np.concatenate([none, *cells]), _ends_of(cells),
-            np.concatenate([none, *faces]), _ends_of(faces), counts)
+            np.concatenate([none, *faces]), _ends_of(faces), counts, _ends_of(facets), facet_counts)
 
 
 def _joined(blocks: list[_CellArrays]) -> _CellArrays:
@@ -466,7 +474,9 @@ def _joined(blocks: list[_CellArrays]) -> _CellArrays:
         return np.concatenate([block[which].astype(np.uint64) + np.uint64(at) for block, at in zip(blocks, first)])
 
     types, corners, face_corners = (np.concatenate([block[i] for block in blocks]) for i in (0, 1, 3))
-    return types, corners, ends(2, 1), face_corners, ends(4, 3), ends(5, 4)
+    facet_ends = ends(6, 4)
+    face_lists = ends(5, 4) if not len(facet_ends) else np.empty(0, np.uint64)
+    return types, corners, ends(2, 1), face_corners, ends(4, 3), face_lists, facet_ends, ends(7, 6)
 
 
 def _cells_of(cells, ndim: int) -> _CellArrays:
@@ -493,11 +503,11 @@ def _cells_of(cells, ndim: int) -> _CellArrays:
             raise ValueError(f"cells of type {name!r} have {array.shape[1]} corners; expected {count}")
         blocks.append((np.full(len(array), number, dtype=np.uint8), array.ravel(),
                        np.arange(count, count * (len(array) + 1), count, dtype=np.uint64), none.astype(np.uint32), none,
-                       np.zeros(len(array), dtype=np.uint64)))
-    if not any(_number_of(name) in (7, 42) for name, _ in pairs):
+                       np.zeros(len(array), dtype=np.uint64), none, np.zeros(len(array), dtype=np.uint64)))
+    if not any(_number_of(name) in _POLYTOPES.values() for name, _ in pairs):
         types, corners = (np.concatenate([np.empty(0, kind), *(block[i] for block in blocks)])
                           for i, kind in ((0, np.uint8), (1, np.uint32)))
-        return types, corners, none, none.astype(np.uint32), none, none
+        return types, corners, none, none.astype(np.uint32), none, none, none, none
     return _joined(blocks)
 
 

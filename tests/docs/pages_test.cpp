@@ -237,6 +237,40 @@ TEST(Meshes, APolyhedronIsGivenByItsFaces) {
   EXPECT_EQ(tegl::extract(prism, 0.5).vertices.size(), 5U);
 }
 
+TEST(Meshes, APolytopeIsGivenByItsFacets) {
+  std::vector<std::array<double, 4>> corners_of_product;
+  const std::vector<std::array<double, 2>> triangle = {{0, 0}, {1, 0}, {0, 1}};
+  for (const auto& p : triangle)
+    for (const auto& q : triangle) corners_of_product.push_back({p[0], p[1], q[0], q[1]});
+  // [polytope]
+  // The product of two triangles (0, 1, 2) and (a, b, c) has the corners 0a, 0b, 0c, 1a, 1b, 1c, 2a, 2b, 2c.
+  tegl::CellLists cells;
+  cells.types = {tegl::CellType::polytope};
+  cells.ends = {0};
+  for (const bool along_first : {true, false})
+    for (tegl::Index side = 0; side < 3; ++side) {  // the prism between two corners of one triangle, over the other one
+      const auto corner = [&](tegl::Index end, tegl::Index k) {
+        const tegl::Index on_side = (side + end) % 3, around = k % 3;
+        return along_first ? 3 * on_side + around : 3 * around + on_side;
+      };
+      for (const tegl::Index end : {0U, 1U}) {
+        for (tegl::Index k = 0; k < 3; ++k) cells.face_corners.push_back(corner(end, k));
+        cells.face_ends.push_back(cells.face_corners.size());
+      }
+      for (tegl::Index k = 0; k < 3; ++k) {
+        for (const tegl::Index p : {corner(0, k), corner(0, k + 1), corner(1, k + 1), corner(1, k)})
+          cells.face_corners.push_back(p);
+        cells.face_ends.push_back(cells.face_corners.size());
+      }
+      cells.facet_ends.push_back(cells.face_ends.size());
+    }
+  cells.facet_lists_ends = {6};
+  tegl::Complex<4> product(corners_of_product, cells);
+  // [/polytope]
+  product.set_values(std::vector<double>{1, 0, 0, 0, 0, 0, 0, 0, 0});
+  EXPECT_EQ(tegl::extract(product, 0.5).vertices.size(), 4U);
+}
+
 TEST(OtherTilings, ACurvedGridHasArraysOfCoordinates) {
   const tegl::Grid<3> grid = tegl::Grid<3>::unit({12, 10, 5});
   std::vector<double> longitudes, latitudes;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Complexes of cells (meshes with a value at each point), and their contours. Cells may be mixed: triangles and
-// quadrilaterals and other polygons; tetrahedra, wedges, pyramids, hexahedra and other polyhedra; 4-simplices and the
-// prisms that 3D cells are over an interval of time.
+// quadrilaterals and other polygons; tetrahedra, wedges, pyramids, hexahedra and other polyhedra; 4-simplices, the
+// prisms that 3D cells are over an interval of time, and other 4D polytopes.
 #pragma once
 
 #include <array>
@@ -39,6 +39,7 @@ enum class CellType : std::uint8_t {
   simplex4 = 100,           ///< 4D: 5 corners
   octahedron = 101,         ///< 3D: 6 corners, three pairs of opposite ones (not in VTK)
   cell16 = 102,             ///< 4D: the 16-cell; 8 corners, four pairs of opposite ones
+  polytope = 103,           ///< 4D: up to 64 corners, given by its facets (CellLists)
   tetrahedron_prism = 110,  ///< 4D: 8 corners
   voxel_prism = 111,        ///< 4D: 16 corners
   hexahedron_prism = 112,   ///< 4D: 16 corners
@@ -49,7 +50,7 @@ enum class CellType : std::uint8_t {
 
 /// The name of a type, such as "tetrahedron"; "unknown" for another number.
 [[nodiscard]] std::string_view name_of(CellType type) noexcept;
-/// Number of corners of a type. Errors: InvalidArgument for another number, for polygons and for polyhedra.
+/// Number of corners of a type. Errors: InvalidArgument for another number, and for polygons, polyhedra and polytopes.
 [[nodiscard]] std::size_t corner_count(CellType type);
 /// Dimension of a type: 2, 3 or 4. Errors: InvalidArgument for another number.
 [[nodiscard]] int dimension(CellType type);
@@ -62,20 +63,29 @@ struct ComplexAccess;
 using CellSigns = std::vector<std::vector<std::uint64_t>>;
 }  // namespace detail
 
-/// Cells of several types, polygons and polyhedra among them. `ends` and the like ascend; the last is the size of the
-/// list that they refer to.
+/// Cells of several types, polygons, polyhedra and 4D polytopes among them. `ends` and the like ascend; the last is the
+/// size of the list that they refer to.
 ///
 /// A polyhedron is given by its faces, each with its corners around it in either direction. Its faces must be as those
 /// of a convex polyhedron: a closed sphere, and two faces have nothing, a corner or an edge in common. They need not be
 /// plane. A polyhedron whose faces are those of a tetrahedron, a pyramid, a wedge, a hexahedron or an octahedron is
 /// such a cell, and a polygon of three or four corners a triangle or a quadrilateral.
+///
+/// A 4D polytope is given by its facets, and a facet as a polyhedron is, by its faces. The faces of a polytope are
+/// listed twice, once in each of the two facets that have it. Its facets must be as those of a convex polytope: a
+/// closed 3-sphere, and two facets have nothing, a corner, an edge or a face in common. (Homology spheres pass, too.)
+/// A polytope whose facets are those of a 4-simplex, a 16-cell or a prism over a cell with a type is such a cell.
+/// Compact contours are manifolds if no two cells have several facets in common.
 struct CellLists {
   std::vector<CellType> types = {};                 ///< #C
-  std::vector<Index> corners = {};                  ///< of all cells; polyhedra may have none here
+  std::vector<Index> corners = {};                  ///< of all cells; polyhedra and polytopes may have none here
   std::vector<std::uint64_t> ends = {};             ///< #C: the end of each cell in `corners`
-  std::vector<Index> face_corners = {};             ///< the corners of all faces of polyhedra
+  std::vector<Index> face_corners = {};             ///< the corners of all faces of polyhedra or of facets
   std::vector<std::uint64_t> face_ends = {};        ///< by face: its end in `face_corners`
-  std::vector<std::uint64_t> face_lists_ends = {};  ///< #C, or empty: the end of each cell's faces in `face_ends`
+  std::vector<std::uint64_t> face_lists_ends = {};  ///< 3D: #C, or empty: the end of each cell's faces in `face_ends`
+  std::vector<std::uint64_t> facet_ends = {};       ///< 4D: by facet of polytopes: the end of its faces in `face_ends`
+  /// 4D: #C, or empty: the end of each cell's facets in `facet_ends`.
+  std::vector<std::uint64_t> facet_lists_ends = {};
 };
 
 /// A complex of cells in N = 2, 3 or 4 dimensions with one value at each point. Owns its data; copies share the cells
@@ -102,8 +112,9 @@ class Complex {
   /// Errors: as the other constructor.
   Complex(std::vector<Point> points, std::span<const CellType> types, std::span<const Index> corners);
 
-  /// Cells of several types, with polygons (N = 2) and polyhedra (N = 3). Errors: as the other constructors;
-  /// InvalidArgument also for lists whose ends do not ascend, and for polygons and polyhedra that CellLists excludes.
+  /// Cells of several types, with polygons (N = 2), polyhedra (N = 3) and polytopes (N = 4). Errors: as the other
+  /// constructors; InvalidArgument also for lists whose ends do not ascend, and for polygons, polyhedra and polytopes
+  /// that CellLists excludes. Polytopes with the same lists, up to the numbers of the points, are checked once.
   Complex(std::vector<Point> points, const CellLists& cells);
 
   [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }   ///< #P x N

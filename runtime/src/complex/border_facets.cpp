@@ -10,7 +10,7 @@
 #include "base/progress.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
-#include "polytope/prism_facets.hpp"
+#include "polytope/solid_facets.hpp"
 
 namespace tegl::detail {
 
@@ -26,7 +26,7 @@ struct FacetUse {
 /// The points that name a facet of a polytope.
 std::vector<Index> points_known_by(const Polytopes& polytopes, std::size_t cell, std::size_t number) {
   if (polytopes.shape(cell).dim() != 4) return facet_points(polytopes, cell, number);
-  const PrismFacet facet = facet_of_prism(polytopes.shape(cell), number);
+  const SolidFacet facet = facet_of_solid(polytopes.shape(cell), number);
   std::vector<Index> points;
   if (facet.is_tabled()) {
     for (const std::uint8_t v : facet.corners) points.push_back(polytopes.cell(cell)[v]);
@@ -64,7 +64,7 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
       }
   });
   // Of a face of a polyhedron, the four smallest corners: different faces share two at most. Likewise of a facet of a
-  // prism (key_of_facet).
+  // 4D polytope (key_of_facet).
   std::vector<std::uint64_t> first_of{first.back()};  // by polytope
   for (std::size_t c = 0; c < cells.polytopes.size(); ++c)
     first_of.push_back(first_of.back() + cells.polytopes.shape(c).facet_count());
@@ -104,12 +104,12 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
     while (g < groups && place >= first[g + 1]) ++g;
     if (g == groups) {
       while (place >= first_of[c + 1]) ++c;
-      border.push_back({g, static_cast<Index>(c), static_cast<std::uint8_t>(place - first_of[c])});
+      border.push_back({g, static_cast<Index>(c), static_cast<std::uint16_t>(place - first_of[c])});
       continue;
     }
     const std::size_t count = facets_of(cells.groups[g].shape).size();
     border.push_back(
-        {g, static_cast<Index>((place - first[g]) / count), static_cast<std::uint8_t>((place - first[g]) % count)});
+        {g, static_cast<Index>((place - first[g]) / count), static_cast<std::uint16_t>((place - first[g]) % count)});
   }
   return border;
 }

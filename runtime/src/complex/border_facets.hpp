@@ -28,7 +28,7 @@ using tables::CellFacet;
 struct BorderFacet {
   std::uint32_t group;  ///< or the number of groups: of the polytopes
   Index cell;           ///< in its group
-  std::uint8_t facet;   ///< number in facets_of, facet_points or facets_of_prism
+  std::uint16_t facet;  ///< number in facets_of, facet_points or facets_of_solid
 };
 using BorderFacets = std::vector<BorderFacet>;
 

@@ -9,12 +9,15 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 #include <Eigen/LU>
 
 #include "base/workers.hpp"
 #include "polytope/recognised_polyhedron.hpp"
+#include "polytope/recognised_polytope.hpp"
 #include "tegl/error.hpp"
 #include "tegl/generated/cells.hpp"
 
@@ -50,7 +53,7 @@ const CellKind& kind_of(CellType type) {
     throw Error(
         ErrorCode::InvalidArgument,
         fmt::format(
-            "cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115 (7 and 42 have any number of corners)",
+            "cell type {}; expected 5, 8 to 14, 100 to 102, or 110 to 115 (7, 42 and 103 have any number of corners)",
             static_cast<int>(type)));
   return *kind;
 }
@@ -244,12 +247,24 @@ void check_lists(const CellLists& cells) {
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} ends of lists of faces; expected one for each of the {} cells, or none",
                             cells.face_lists_ends.size(), cells.types.size()));
+  if (cells.facet_lists_ends.size() != cells.types.size() && !cells.facet_lists_ends.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} ends of lists of facets; expected one for each of the {} cells, or none",
+                            cells.facet_lists_ends.size(), cells.types.size()));
   check("corners", cells.ends, cells.corners.size());
   check("faces", cells.face_ends, cells.face_corners.size());
-  check("lists of faces", cells.face_lists_ends, cells.face_ends.size());
+  check("lists of facets", cells.facet_lists_ends, cells.facet_ends.size());
+  if (cells.facet_ends.empty()) return check("lists of faces", cells.face_lists_ends, cells.face_ends.size());
+  if (!cells.face_lists_ends.empty())
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("{} ends of lists of faces beside {} facets; expected none: the faces of polytopes belong to "
+                    "their facets",
+                    cells.face_lists_ends.size(), cells.facet_ends.size()));
+  check("facets", cells.facet_ends, cells.face_ends.size());
 }
 
-/// Appends cells that may be polygons and polyhedra.
+/// Appends cells that may be polygons, polyhedra and 4D polytopes.
 class ListedCells {
  public:
   ListedCells(int dim, std::size_t points, const CellLists& cells) : dim_(dim), points_(points), cells_(cells) {
@@ -262,6 +277,7 @@ class ListedCells {
     const CellType type = cells_.types[c];
     if (type == CellType::polygon && dim_ == 2) return add_polygon(c, corners);
     if (type == CellType::polyhedron && dim_ == 3) return add_polyhedron(c, corners);
+    if (type == CellType::polytope && dim_ == 4) return add_polytope(c, corners);
     const CellKind& kind = kind_in(dim_, type, c);
     CellGroup& group = groups_[static_cast<std::size_t>(kind.shape)];
     if (corners.size() != group.corner_count)
@@ -307,6 +323,53 @@ class ListedCells {
     polytopes_.add_polyhedron(found.corners, std::move(found.rings), std::move(found.ends));
   }
 
+  void add_polytope(std::size_t c, std::span<const Index> corners) {
+    const bool has_facets = !cells_.facet_lists_ends.empty();
+    const std::uint64_t first = c == 0 || !has_facets ? 0 : cells_.facet_lists_ends[c - 1];
+    const std::uint64_t last = has_facets ? cells_.facet_lists_ends[c] : 0;
+    const std::uint64_t first_face = first == 0 ? 0 : cells_.facet_ends[first - 1];
+    const std::uint64_t begin = first_face == 0 ? 0 : cells_.face_ends[first_face - 1];
+    ends_.clear();
+    facet_ends_.clear();
+    for (std::uint64_t f = first; f < last; ++f) facet_ends_.push_back(cells_.facet_ends[f] - first_face);
+    for (std::uint64_t k = 0; !facet_ends_.empty() && k < facet_ends_.back(); ++k)
+      ends_.push_back(cells_.face_ends[first_face + k] - begin);
+    const std::span<const Index> faces(cells_.face_corners.data() + begin, ends_.empty() ? 0 : ends_.back());
+    RecognisedPolytope found = recognise(c, {faces, ends_, facet_ends_});
+    if (!corners.empty()) require_same_corners(c, corners, found.corners);
+    static constexpr CellType kTypes[] = {
+        CellType::tetrahedron_prism, CellType::pyramid_prism, CellType::wedge_prism, CellType::hexahedron_prism,
+        CellType::octahedron_prism,  CellType::simplex4,      CellType::cell16};
+    if (found.kind != PolytopeKind::other)
+      return add_known(kTypes[static_cast<std::size_t>(found.kind)], c, found.corners);
+    polytopes_.add_polytope(std::move(found));
+  }
+
+  /// recognise_polytope, once for all cells with the same lists up to the numbers of their points. `corners` of what is
+  /// kept are places among the distinct points.
+  RecognisedPolytope recognise(std::size_t c, const PolytopeLists& lists) {
+    std::vector<Index> distinct;
+    std::vector<std::uint64_t> key(lists.face_ends.begin(), lists.face_ends.end());
+    key.push_back(lists.facet_ends.size());
+    key.insert(key.end(), lists.facet_ends.begin(), lists.facet_ends.end());
+    for (const Index p : lists.corners) {
+      const auto at = static_cast<std::size_t>(std::find(distinct.begin(), distinct.end(), p) - distinct.begin());
+      if (at == distinct.size()) distinct.push_back(p);
+      if (p >= points_ || at == kPolytopeCorners) return recognise_polytope(c, points_, lists);  // an error
+      key.push_back(at);
+    }
+    auto known = recognised_.find(key);
+    if (known == recognised_.end()) {
+      RecognisedPolytope found = recognise_polytope(c, points_, lists);
+      for (Index& p : found.corners)
+        p = static_cast<Index>(std::find(distinct.begin(), distinct.end(), p) - distinct.begin());
+      known = recognised_.emplace(std::move(key), std::move(found)).first;
+    }
+    RecognisedPolytope result = known->second;
+    for (Index& p : result.corners) p = distinct[p];
+    return result;
+  }
+
   void require_same_corners(std::size_t c, std::span<const Index> corners, const std::vector<Index>& of_faces) const {
     check_corners(c, points_, corners);
     std::vector<Index> given(corners.begin(), corners.end()), found(of_faces);
@@ -326,7 +389,8 @@ class ListedCells {
   const CellLists& cells_;
   std::vector<CellGroup> groups_;
   Polytopes polytopes_;
-  std::vector<std::uint64_t> ends_;
+  std::vector<std::uint64_t> ends_, facet_ends_;
+  std::map<std::vector<std::uint64_t>, RecognisedPolytope> recognised_;
 };
 
 }  // namespace
@@ -376,6 +440,7 @@ namespace tegl {
 std::string_view name_of(CellType type) noexcept {
   if (type == CellType::polygon) return "polygon";
   if (type == CellType::polyhedron) return "polyhedron";
+  if (type == CellType::polytope) return "polytope";
   const detail::CellKind* const kind = detail::find_kind(type);
   return kind == nullptr ? "unknown" : kind->name;
 }
@@ -385,6 +450,7 @@ std::size_t corner_count(CellType type) { return detail::table_of(detail::kind_o
 int dimension(CellType type) {
   if (type == CellType::polygon) return 2;
   if (type == CellType::polyhedron) return 3;
+  if (type == CellType::polytope) return 4;
   return static_cast<int>(detail::table_of(detail::kind_of(type).shape).dim);
 }
 

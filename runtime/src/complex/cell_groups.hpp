@@ -44,8 +44,8 @@ struct CellGroup {
   [[nodiscard]] const Index* cell(std::size_t i) const noexcept { return corners.data() + i * corner_count; }
 };
 
-/// The cells of a complex. Groups are ordered by shape and not empty. Polygons and polyhedra are numbered after the
-/// cells of all groups; those with a shape of the tables are in the groups.
+/// The cells of a complex. Groups are ordered by shape and not empty. Polygons, polyhedra and polytopes are numbered
+/// after the cells of all groups; those with a shape of the tables are in the groups.
 struct CellGroups {
   std::vector<CellGroup> groups;
   std::size_t cell_count = 0;
@@ -70,7 +70,7 @@ template <int N>
                                      std::span<const Index> corners);
 /// The same for cells of one type.
 [[nodiscard]] CellGroups group_cells(int dim, std::size_t points, CellType type, std::span<const Index> corners);
-/// The same with polygons and polyhedra.
+/// The same with polygons, polyhedra and 4D polytopes.
 [[nodiscard]] CellGroups group_cells(int dim, std::size_t points, const CellLists& cells);
 
 /// Access to the private data of complexes.

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "ambiguity/face_decision.hpp"
+#include "ambiguity/lone_pair.hpp"
 #include "base/progress.hpp"
 #include "complex/cell_cases.hpp"
 #include "complex/edge_alpha.hpp"
@@ -42,7 +43,7 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
       if (std::any_of(points.begin(), points.end(), [&](Index p) { return std::isnan(values[p]); })) continue;
       const bool is_inverted = (signs[g][cell >> 6] >> (cell & 63u) & 1u) != 0;
       if (N == 4) {
-        const PrismFacet facet = facet_of_prism(cells.polytopes.shape(cell), number);
+        const SolidFacet facet = facet_of_solid(cells.polytopes.shape(cell), number);
         const bool flip = (facet.is_inverted != is_inverted) != descends;
         facet.is_tabled() ? add_tabled(facet, points.data(), flip)
                           : add_solid(facet, points.data(), cells.polytopes.entangled_base(cell), flip);
@@ -149,16 +150,19 @@ std::vector<std::vector<CapVertex>> ComplexCaps<N>::parts_around(const std::vect
   return runs;
 }
 
-/// A facet of a prism over a polyhedron that other cells have in their tables.
+/// A facet of a 4D polytope that other cells have in their tables.
 template <int N>
-void ComplexCaps<N>::add_tabled(const PrismFacet& facet, const Index* points, bool flip) {
+void ComplexCaps<N>::add_tabled(const SolidFacet& facet, const Index* points, bool flip) {
   using tables::CellShape;
-  static constexpr CellFacet kWedge{CellShape::wedge, 6, {0, 1, 2, 3, 4, 5}, false};
-  static constexpr CellFacet kHexahedron{CellShape::hexahedron, 8, {0, 1, 2, 3, 4, 5, 6, 7}, false};
-  const bool is_wedge = facet.kind == PrismFacet::Kind::wedge;
-  Facet of{is_wedge ? kWedge : kHexahedron, {}, 0, flip};
+  static constexpr CellFacet kKnown[] = {{CellShape::tetrahedron, 4, {0, 1, 2, 3}, false},
+                                         {CellShape::pyramid, 5, {0, 1, 2, 3, 4}, false},
+                                         {CellShape::wedge, 6, {0, 1, 2, 3, 4, 5}, false},
+                                         {CellShape::hexahedron, 8, {0, 1, 2, 3, 4, 5, 6, 7}, false},
+                                         {CellShape::octahedron, 6, {0, 1, 2, 3, 4, 5}, false}};
+  Facet of{kKnown[static_cast<std::size_t>(facet.kind)], {}, 0, flip};
+  const bool is_hexahedron = facet.kind == SolidFacet::Kind::hexahedron;
   for (unsigned v = 0; v < of.of.corner_count; ++v) {
-    of.points[v] = points[facet.corners[is_wedge ? v : unsigned{kHexahedronCorners[v]}]];
+    of.points[v] = points[facet.corners[is_hexahedron ? unsigned{kHexahedronCorners[v]} : v]];
     if (!(values_[of.points[v]] >= isovalue_)) continue;
     of.high |= 1u << v;
     corners_.push_back(of.points[v]);
@@ -438,6 +442,12 @@ DecidedFacet ComplexCaps<N>::decide(const Facet& facet) const {
     if (facet.of.shape == CellShape::hexahedron) {
       result.cube.emplace(CubeFrame::number_of(facet.points.data()), facet.high, high,
                           cube_key(rule, at, isovalue_, facet.high).choice());
+      return result;
+    }
+    if (const auto pair = lone_pair(facet.high, 3); facet.of.shape == CellShape::octahedron && pair &&
+                                                    !rule.separates &&
+                                                    has_tunnel_between(*pair, std::span(at).first(6), isovalue_)) {
+      result.tunnel = pair;
       return result;
     }
     variant = ResolvedCells::variant(facet.high, ambiguous, high);

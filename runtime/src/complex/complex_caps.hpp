@@ -13,7 +13,7 @@
 #include "base/stopwatch.hpp"
 #include "complex/border_facets.hpp"
 #include "complex/contour_numbers.hpp"
-#include "polytope/prism_facets.hpp"
+#include "polytope/solid_facets.hpp"
 #include "regions/decided_regions.hpp"
 #include "regions/region_divisions.hpp"
 #include "tegl/table_contract.hpp"
@@ -97,10 +97,10 @@ class ComplexCaps {
   /// Adds the high part of an edge or a face of a polytope.
   void add_face(const std::vector<Index>& points, bool flip);
   [[nodiscard]] std::vector<std::vector<CapVertex>> parts_around(const std::vector<Index>& points) const;
-  /// Adds the high part of a facet of a prism over a polyhedron with these points at its corners. `entangled`:
+  /// Adds the high part of a facet of a 4D polytope with these points at its corners. `entangled`:
   /// Polytopes::entangled_base.
-  void add_tabled(const PrismFacet& facet, const Index* points, bool flip);
-  void add_solid(const PrismFacet& facet, const Index* points, std::optional<Index> entangled, bool flip);
+  void add_tabled(const SolidFacet& facet, const Index* points, bool flip);
+  void add_solid(const SolidFacet& facet, const Index* points, std::optional<Index> entangled, bool flip);
   void add_table(const Facet& facet, const tables::RegionTable& table);
   [[nodiscard]] Boundary boundary_of(const Facet& facet) const;
   /// Adds the contour's polygons in a facet. `next`: by vertex, the end of its segment, or the vertex itself.
@@ -113,7 +113,7 @@ class ComplexCaps {
   void add_cube(const Facet& facet, const Segments& next, Boundary& to) const;
   void add_tunnel_centres(const Facet& facet, Boundary& to) const;
   [[nodiscard]] Index own_of_cube(const Facet& facet, unsigned own) const;
-  /// The contour in a hexahedron or wedge of a prism over a polyhedron.
+  /// The contour in a facet of a 4D polytope that has a table.
   [[nodiscard]] DecidedFacet decide(const Facet& facet) const;
   void add_regions(const Facet& facet);
   [[nodiscard]] const RegionDivision& division_of(const Facet& facet, Boundary& boundary);

@@ -13,7 +13,7 @@
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "kernel/contour_output.hpp"
-#include "prisms/prism_contours.hpp"
+#include "prisms/solid_contours.hpp"
 #include "tegl/error.hpp"
 #include "tegl/generated/cells.hpp"
 #include "tegl/normals.hpp"
@@ -61,7 +61,7 @@ std::vector<PolytopeBlock> polytope_blocks(const CellGroups& cells, std::span<co
   }
   const auto* const of = active == nullptr ? nullptr : &listed;
   if (cells.polytopes.dim() == 4)
-    return build_prism_contours(cells.polytopes, values, rules, of, work_of(options, progress));
+    return build_solid_contours(cells.polytopes, values, rules, of, work_of(options, progress));
   return build_polytope_contours(cells.polytopes, values, rules, of, work_of(options, progress));
 }
 

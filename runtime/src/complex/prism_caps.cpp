@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Caps in facets of prisms over polyhedra that no other cell has: each region of the high part is bounded by one
+// Caps in facets of 4D polytopes that cells with tables do not have: each region of the high part is bounded by one
 // sphere, as the contour's polygons are discs, and is a cone from its only corner or from the mean of its points.
 #include <algorithm>
 #include <map>
 
 #include "base/disjoint_sets.hpp"
 #include "complex/complex_caps.hpp"
-#include "prisms/prism_cell.hpp"
+#include "prisms/solid_cell.hpp"
 
 namespace tegl::detail {
 
@@ -35,7 +35,7 @@ void add_fan(std::vector<CapVertex> part, std::vector<CapTriangle>& triangles) {
 }  // namespace
 
 template <int N>
-void ComplexCaps<N>::add_solid(const PrismFacet& facet, const Index* points, std::optional<Index> entangled,
+void ComplexCaps<N>::add_solid(const SolidFacet& facet, const Index* points, std::optional<Index> entangled,
                                bool flip) {
   if constexpr (N == 4) {
     std::vector<double> at;
@@ -93,8 +93,8 @@ void ComplexCaps<N>::add_solid(const PrismFacet& facet, const Index* points, std
   }
 }
 
-template void ComplexCaps<2>::add_solid(const PrismFacet&, const Index*, std::optional<Index>, bool);
-template void ComplexCaps<3>::add_solid(const PrismFacet&, const Index*, std::optional<Index>, bool);
-template void ComplexCaps<4>::add_solid(const PrismFacet&, const Index*, std::optional<Index>, bool);
+template void ComplexCaps<2>::add_solid(const SolidFacet&, const Index*, std::optional<Index>, bool);
+template void ComplexCaps<3>::add_solid(const SolidFacet&, const Index*, std::optional<Index>, bool);
+template void ComplexCaps<4>::add_solid(const SolidFacet&, const Index*, std::optional<Index>, bool);
 
 }  // namespace tegl::detail

@@ -39,7 +39,7 @@ struct PolytopeBlock {
   /// A vertex of prisms over polyhedra that is not on an edge.
   struct InnerVertex {
     enum class Kind : std::uint8_t {
-      polygon,  ///< barycentre of a loop in a facet that is tabled (PrismFacet); known by its vertices
+      polygon,  ///< barycentre of a loop in a facet that is tabled (SolidFacet); known by its vertices
       loop,     ///< the same in another facet: known by the facet and a vertex
       in_cube,  ///< a vertex of a hexahedron's own, as in images: known by the hexahedron and the mask
       mean,     ///< of the cell: the mean of its points

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The faces of polygons, polyhedra and prisms over polyhedra, in memory that others keep.
+// The faces of polygons, polyhedra and 4D polytopes, in memory that others keep.
 #pragma once
 
 #include <array>
@@ -10,13 +10,16 @@
 
 namespace tegl::detail {
 
-/// Most corners of a polygon or polyhedron: the bits of a signature.
+/// Most corners of a polytope: the bits of a signature.
 inline constexpr std::size_t kPolytopeCorners = 64;
+
+struct PolytopeSolids;
 
 /// The faces of a polytope as rings of its corners. Along each ring of a polyhedron, seen from outside, the corners are
 /// counterclockwise if the cell is not inverted; a polygon has one ring. A prism over a polyhedron (4D) has the rings
 /// of the polyhedron, its base; corner v of the base is corner v at the lower end and corner v + base_corners() at the
-/// upper one (prism_facets.hpp lists its facets).
+/// upper one. Another 4D polytope has no rings, but polyhedra as facets (solid_facets.hpp, which lists those of prisms,
+/// too).
 class PolytopeFaces {
  public:
   using Pair = std::array<std::uint8_t, 2>;
@@ -36,8 +39,13 @@ class PolytopeFaces {
         ends_(ends),
         edges_(edges),
         faces_of_(faces_of) {}
+  /// A 4D polytope with these edges and facets. `solids` and the array must outlive this object.
+  constexpr PolytopeFaces(std::size_t corners, std::span<const Pair> edges, const PolytopeSolids& solids)
+      : corner_count_(corners), edges_(edges), solids_(&solids) {}
 
-  [[nodiscard]] constexpr int dim() const noexcept { return is_prism_ ? 4 : face_count() == 1 ? 2 : 3; }
+  [[nodiscard]] constexpr int dim() const noexcept {
+    return is_prism_ || solids_ != nullptr ? 4 : face_count() == 1 ? 2 : 3;
+  }
   [[nodiscard]] constexpr std::size_t corner_count() const noexcept {
     return is_prism_ ? 2 * corner_count_ : corner_count_;
   }
@@ -45,10 +53,10 @@ class PolytopeFaces {
   [[nodiscard]] constexpr std::size_t base_corners() const noexcept { return corner_count_; }
   [[nodiscard]] constexpr std::size_t base_edges() const noexcept { return faces_of_.size(); }
   [[nodiscard]] constexpr std::size_t face_count() const noexcept { return ends_.size(); }
-  /// Number of facets: edges of a polygon, faces of a polyhedron, polyhedra around a prism.
-  [[nodiscard]] constexpr std::size_t facet_count() const noexcept {
-    return is_prism_ ? face_count() + 2 : face_count() == 1 ? corner_count_ : face_count();
-  }
+  /// Number of facets: edges of a polygon, faces of a polyhedron, polyhedra around a 4D polytope.
+  [[nodiscard]] std::size_t facet_count() const noexcept;
+  /// The facets of a 4D polytope that is no prism; otherwise null.
+  [[nodiscard]] constexpr const PolytopeSolids* solids() const noexcept { return solids_; }
   /// All rings, and where each ends.
   [[nodiscard]] constexpr std::span<const std::uint8_t> rings() const noexcept { return rings_; }
   [[nodiscard]] constexpr std::span<const std::uint16_t> ends() const noexcept { return ends_; }
@@ -81,6 +89,7 @@ class PolytopeFaces {
   std::span<const std::uint8_t> rings_, ring_edges_;
   std::span<const std::uint16_t> ends_;
   std::span<const Pair> edges_, faces_of_;  ///< by edge
+  const PolytopeSolids* solids_ = nullptr;
 };
 
 }  // namespace tegl::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Keeps polygons and polyhedra, their lattices and their orientations.
+// Keeps polygons, polyhedra and 4D polytopes, their lattices and their orientations.
 #include "polytope/polytopes.hpp"
 
 #include <algorithm>
@@ -8,58 +8,23 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/LU>
+
 #include "base/workers.hpp"
 #include "polytope/polygon_prisms.hpp"
+#include "polytope/recognised_polytope.hpp"
+#include "polytope/solid_facets.hpp"
 
 namespace tegl::detail {
-
-PolytopeShape::PolytopeShape(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends)
-    : PolytopeShape(arrays_of(std::move(rings), std::move(ends))) {}
-
-PolytopeShape::PolytopeShape(Arrays arrays) : arrays_(std::make_shared<const Arrays>(std::move(arrays))) {
-  const Arrays& a = *arrays_;
-  static_cast<PolytopeFaces&>(*this) = {a.corner_count, a.rings, a.ring_edges, a.ends, a.edges, a.faces_of, a.is_prism};
-}
-
-PolytopeShape::Arrays PolytopeShape::arrays_of(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends) {
-  Arrays a{std::move(rings), {}, std::move(ends), {}, {}, 0, false};
-  a.ring_edges.resize(a.rings.size());
-  for (std::size_t f = 0; f < a.ends.size(); ++f) {
-    const std::size_t begin = f == 0 ? 0 : a.ends[f - 1], count = a.ends[f] - begin;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto [v, w] = std::minmax(a.rings[begin + i], a.rings[begin + (i + 1) % count]);
-      const Pair edge{v, w};
-      const auto at = static_cast<std::size_t>(std::find(a.edges.begin(), a.edges.end(), edge) - a.edges.begin());
-      a.ring_edges[begin + i] = static_cast<std::uint8_t>(at);
-      const auto face = static_cast<std::uint8_t>(f);
-      if (at < a.edges.size()) {
-        a.faces_of[at][1] = face;
-        continue;
-      }
-      a.edges.push_back(edge);
-      a.faces_of.push_back({face, face});
-    }
-  }
-  for (const std::uint8_t corner : a.rings) a.corner_count = std::max(a.corner_count, std::size_t{corner} + 1);
-  return a;
-}
-
-PolytopeShape PolytopeShape::prism_over(const PolytopeShape& base) {
-  Arrays prism = *base.arrays_;
-  const auto count = static_cast<std::uint8_t>(prism.corner_count);
-  const std::size_t edges = prism.edges.size();
-  for (std::size_t e = 0; e < edges; ++e)
-    prism.edges.push_back(
-        {static_cast<std::uint8_t>(prism.edges[e][0] + count), static_cast<std::uint8_t>(prism.edges[e][1] + count)});
-  for (std::uint8_t v = 0; v < count; ++v) prism.edges.push_back({v, static_cast<std::uint8_t>(v + count)});
-  prism.is_prism = true;
-  return PolytopeShape(std::move(prism));
-}
 
 void Polytopes::add(std::span<const Index> corners, Lattice lattice) {
   const auto [at, is_new] = numbers_.try_emplace(std::move(lattice), static_cast<std::uint32_t>(shapes_.size()));
   if (is_new) shapes_.emplace_back(at->first.first, at->first.second);
-  shape_of_.push_back(at->second);
+  add(corners, at->second);
+}
+
+void Polytopes::add(std::span<const Index> corners, std::uint32_t shape) {
+  shape_of_.push_back(shape);
   first_.push_back(corners_.size());
   corners_.insert(corners_.end(), corners.begin(), corners.end());
 }
@@ -74,6 +39,55 @@ void Polytopes::add_polygon(std::span<const Index> corners) {
 void Polytopes::add_polyhedron(std::span<const Index> corners, std::vector<std::uint8_t> rings,
                                std::vector<std::uint16_t> ends) {
   add(corners, {std::move(rings), std::move(ends)});
+}
+
+void Polytopes::add_polytope(RecognisedPolytope polytope) {
+  Lattice description;  // all facets, one after the other
+  for (const RecognisedPolytope::Facet& facet : polytope.facets) {
+    auto& [bytes, numbers] = description;
+    numbers.insert(numbers.end(),
+                   {static_cast<std::uint16_t>(facet.shape), facet.is_inverted ? std::uint16_t{1} : std::uint16_t{0},
+                    static_cast<std::uint16_t>(facet.corners.size()), static_cast<std::uint16_t>(facet.ends.size())});
+    numbers.insert(numbers.end(), facet.ends.begin(), facet.ends.end());
+    bytes.insert(bytes.end(), facet.corners.begin(), facet.corners.end());
+    bytes.insert(bytes.end(), facet.rings.begin(), facet.rings.end());
+  }
+  const auto [at, is_new] = numbers_.try_emplace(std::move(description), static_cast<std::uint32_t>(shapes_.size()));
+  if (is_new) shapes_.push_back(shape_of_facets(polytope));
+  add(polytope.corners, at->second);
+}
+
+PolytopeShape Polytopes::shape_of_facets(const RecognisedPolytope& polytope) {
+  PolytopeSolids solids;
+  std::vector<PolytopeFaces::Pair> edges;
+  std::vector<std::uint16_t> number(kPolytopeCorners * kPolytopeCorners);  // 1 + the edge between two corners
+  for (const RecognisedPolytope::Facet& facet : polytope.facets) {
+    solids.solids.push_back({static_cast<SolidFacet::Kind>(facet.shape), facet.is_inverted,
+                             static_cast<std::uint32_t>(solids.corners.size()),
+                             static_cast<std::uint32_t>(solids.edges.size()),
+                             static_cast<std::uint32_t>(solids.lattices.size())});
+    PolytopeFaces faces;
+    if (facet.shape == PolyhedronShape::other) {
+      solids.solids.back().kind = SolidFacet::Kind::other;
+      const auto at = solids_.try_emplace({facet.rings, facet.ends}, facet.rings, facet.ends).first;
+      solids.lattices.push_back(at->second);
+      faces = at->second;
+    } else {
+      faces = faces_of_known(facet.shape);
+    }
+    solids.corners.insert(solids.corners.end(), facet.corners.begin(), facet.corners.end());
+    for (const auto& [a, b] : faces.edges()) {
+      const auto [v, w] = std::minmax(facet.corners[a], facet.corners[b]);
+      std::uint16_t& edge = number[kPolytopeCorners * v + w];
+      if (edge == 0) {
+        edges.push_back({v, w});
+        edge = static_cast<std::uint16_t>(edges.size());
+      }
+      solids.edges.push_back(static_cast<std::uint16_t>(edge - 1));
+    }
+  }
+  return PolytopeShape::of_solids(polytope.corners.size(), std::move(edges),
+                                  std::make_shared<const PolytopeSolids>(std::move(solids)));
 }
 
 std::vector<Index> Polytopes::find_entangled() const {
@@ -153,13 +167,26 @@ void Polytopes::renumber(std::span<const Index> number) {
 
 namespace {
 
+/// Moves points to the unit box: subtracts the lowest coordinates, and divides by the extents that are not 0.
+template <int N>
+void move_to_unit_box(std::span<std::array<double, N>> points) {
+  for (std::size_t i = 0; i < N; ++i) {
+    const auto less = [i](const auto& a, const auto& b) { return a[i] < b[i]; };
+    const auto [first, last] = std::minmax_element(points.begin(), points.end(), less);
+    const double lowest = (*first)[i], extent = (*last)[i] - lowest;
+    for (auto& point : points) point[i] = extent > 0 ? (point[i] - lowest) / extent : 0.0;
+  }
+}
+
+/// Volumes relative to the box around a cell up to which it is flat.
+constexpr double kFlat = 0x1p-30;
+
 /// The volume (3D) or area (2D) inside rings, times a positive factor, relative to the box around the corners; 0 if
 /// the cell is flat up to rounding. Of a prism: of its cross-section in the middle.
 template <int N, int M>
 double relative_volume(const PolytopeShape& shape, const Index* corners,
                        const std::vector<std::array<double, M>>& points) {
   using Point = std::array<double, N>;
-  constexpr double kFlat = 0x1p-30;
   const std::size_t count = shape.base_corners();
   std::array<Point, kPolytopeCorners> at;
   for (std::size_t v = 0; v < count; ++v)
@@ -167,17 +194,7 @@ double relative_volume(const PolytopeShape& shape, const Index* corners,
       at[v][i] = points[corners[v]][i];
       if constexpr (M > N) at[v][i] = 0.5 * at[v][i] + 0.5 * points[corners[v + count]][i];
     }
-  Point lowest = at[0], highest = lowest;
-  for (std::size_t v = 0; v < count; ++v)
-    for (std::size_t i = 0; i < N; ++i) {
-      lowest[i] = std::min(lowest[i], at[v][i]);
-      highest[i] = std::max(highest[i], at[v][i]);
-    }
-  for (std::size_t v = 0; v < count; ++v)
-    for (std::size_t i = 0; i < N; ++i) {
-      const double extent = highest[i] - lowest[i];
-      at[v][i] = extent > 0 ? (at[v][i] - lowest[i]) / extent : 0.0;
-    }
+  move_to_unit_box<N>(std::span(at).first(count));
   double volume = 0.0;
   for (std::size_t f = 0; f < shape.face_count(); ++f) {
     const std::span<const std::uint8_t> ring = shape.ring(f);
@@ -196,6 +213,50 @@ double relative_volume(const PolytopeShape& shape, const Index* corners,
   return std::abs(volume) > kFlat ? volume : 0.0;
 }
 
+/// The volume inside the facets of a 4D polytope, times a positive factor, likewise: of the pyramids with their apex at
+/// the mean of all corners over tetrahedra between the mean of a facet, the mean of one of its faces and an edge there.
+double relative_volume_of_solids(const PolytopeShape& shape, const Index* corners,
+                                 const std::vector<std::array<double, 4>>& points) {
+  using Point = std::array<double, 4>;
+  std::array<Point, kPolytopeCorners> at;
+  for (std::size_t v = 0; v < shape.corner_count(); ++v) at[v] = points[corners[v]];
+  move_to_unit_box<4>(std::span(at).first(shape.corner_count()));
+  const auto mean = [&](std::span<const std::uint8_t> of) {
+    Point sum{};
+    for (const std::uint8_t v : of)
+      for (std::size_t i = 0; i < 4; ++i) sum[i] += at[v][i] / static_cast<double>(of.size());
+    return sum;
+  };
+  std::array<std::uint8_t, kPolytopeCorners> all;
+  for (std::size_t v = 0; v < shape.corner_count(); ++v) all[v] = static_cast<std::uint8_t>(v);
+  const Point centre = mean(std::span(all).first(shape.corner_count()));
+  double volume = 0.0;
+  for (std::size_t f = 0; f < shape.facet_count(); ++f) {
+    const SolidFacet facet = facet_of_solid(shape, f);
+    const Point of_facet = mean(facet.corners);
+    for (std::size_t k = 0; k < facet.shape.face_count(); ++k) {
+      std::vector<std::uint8_t> ring;
+      for (const std::uint8_t v : facet.shape.ring(k)) ring.push_back(facet.corners[v]);
+      const Point of_face = mean(ring);
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        Eigen::Matrix4d rows;
+        const std::array<const Point*, 4> to = {&of_face, &at[ring[i]], &at[ring[(i + 1) % ring.size()]], &centre};
+        for (int r = 0; r < 4; ++r)
+          for (int c = 0; c < 4; ++c) rows(r, c) = (*to[r])[c] - of_facet[c];
+        volume += facet.is_inverted ? -rows.determinant() : rows.determinant();
+      }
+    }
+  }
+  return std::abs(volume) > kFlat ? volume : 0.0;
+}
+
+template <int N>
+double volume_of(const PolytopeShape& shape, const Index* corners, const std::vector<std::array<double, N>>& points) {
+  if constexpr (N == 4)
+    if (shape.solids() != nullptr) return relative_volume_of_solids(shape, corners, points);
+  return relative_volume<std::min(N, 3), N>(shape, corners, points);
+}
+
 }  // namespace
 
 template <int N>
@@ -205,7 +266,7 @@ std::vector<std::uint64_t> find_polytope_signs(const Polytopes& polytopes,
   std::vector<std::uint64_t> kept(inverted.size());
   for_each_item(inverted.size(), 0, {}, [&](std::size_t w) {
     for (std::size_t c = 64 * w; c < std::min(polytopes.size(), 64 * w + 64); ++c) {
-      const double volume = relative_volume<std::min(N, 3), N>(polytopes.shape(c), polytopes.cell(c), points);
+      const double volume = volume_of<N>(polytopes.shape(c), polytopes.cell(c), points);
       inverted[w] |= std::uint64_t{volume < 0} << (c & 63u);
       kept[w] |= std::uint64_t{volume > 0} << (c & 63u);
     }

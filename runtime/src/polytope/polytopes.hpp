@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The polygons and polyhedra of a complex, by the faces around them.
+// The polygons, polyhedra and 4D polytopes of a complex, by the faces around them.
 #pragma once
 
 #include <algorithm>
@@ -14,35 +14,15 @@
 #include <utility>
 #include <vector>
 
-#include "polytope/polytope_faces.hpp"
+#include "polytope/polytope_shape.hpp"
 #include "tegl/contour.hpp"
 
 namespace tegl::detail {
 
-/// The faces of a polytope, with the memory for them. Copies share it.
-class PolytopeShape : public PolytopeFaces {
- public:
-  /// `rings`: one face after the other; `ends`: the end of each face. The faces of a polyhedron must be checked.
-  PolytopeShape(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
-  /// The prism over a polyhedron.
-  [[nodiscard]] static PolytopeShape prism_over(const PolytopeShape& base);
+struct RecognisedPolytope;
 
- private:
-  struct Arrays {
-    std::vector<std::uint8_t> rings, ring_edges;
-    std::vector<std::uint16_t> ends;
-    std::vector<Pair> edges, faces_of;
-    std::size_t corner_count;
-    bool is_prism;
-  };
-  explicit PolytopeShape(Arrays arrays);
-  [[nodiscard]] static Arrays arrays_of(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
-
-  std::shared_ptr<const Arrays> arrays_;
-};
-
-/// The polygons (of a 2D complex), polyhedra (3D) or prisms over polyhedra (4D) of a complex, in the order of the
-/// input.
+/// The polygons (of a 2D complex), polyhedra (3D), or 4D polytopes of a complex, in the order of the input. The latter
+/// are either all prisms over polyhedra, made by in_time, or none is known to be one.
 class Polytopes {
  public:
   [[nodiscard]] std::size_t size() const noexcept { return shape_of_.size(); }
@@ -61,14 +41,19 @@ class Polytopes {
   void add_polygon(std::span<const Index> corners);
   /// Appends a polyhedron with the rings of its faces, checked, in the numbers of its corners.
   void add_polyhedron(std::span<const Index> corners, std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
+  /// Appends a 4D polytope.
+  void add_polytope(RecognisedPolytope polytope);
   /// The prisms over the polygons or polyhedra in the intervals between layers of `points` points each.
   [[nodiscard]] Polytopes in_time(std::size_t points, std::size_t intervals) const;
-  /// Of prisms over polyhedra: number of polyhedra. Prism c + k * base_count() is over polyhedron c in interval k.
+  /// Of prisms over polyhedra: number of polyhedra; otherwise 0. Prism c + k * base_count() is over polyhedron c in
+  /// interval k.
   [[nodiscard]] std::size_t base_count() const noexcept { return is_entangled_.size(); }
   /// The polyhedra, ascending, that have corners in common with another one which are not all in one face: both cells
   /// may have the same diagonals between edges.
   [[nodiscard]] const std::vector<Index>& entangled() const noexcept { return entangled_; }
-  [[nodiscard]] bool is_entangled(std::size_t prism) const noexcept { return is_entangled_[prism % base_count()]; }
+  [[nodiscard]] bool is_entangled(std::size_t prism) const noexcept {
+    return base_count() > 0 && is_entangled_[prism % base_count()];
+  }
   /// The polyhedron under a prism if it is entangled.
   [[nodiscard]] std::optional<Index> entangled_base(std::size_t prism) const noexcept {
     return is_entangled(prism) ? std::optional(static_cast<Index>(prism % base_count())) : std::nullopt;
@@ -89,11 +74,14 @@ class Polytopes {
   static constexpr std::size_t kCellsOfPart = 4096;
   using Lattice = std::pair<std::vector<std::uint8_t>, std::vector<std::uint16_t>>;
   void add(std::span<const Index> corners, Lattice lattice);
+  void add(std::span<const Index> corners, std::uint32_t shape);
+  [[nodiscard]] PolytopeShape shape_of_facets(const RecognisedPolytope& polytope);
   [[nodiscard]] Polytopes solids_in_time(std::size_t points, std::size_t intervals) const;
   [[nodiscard]] std::vector<Index> find_entangled() const;
 
   std::vector<PolytopeShape> shapes_;
-  std::map<Lattice, std::uint32_t> numbers_;  ///< of the shapes
+  std::map<Lattice, std::uint32_t> numbers_;  ///< of the shapes; of 4D polytopes, by the facets' descriptions
+  std::map<Lattice, PolytopeShape> solids_;   ///< the facets of 4D polytopes that have no table
   std::vector<std::uint32_t> shape_of_;       ///< by cell
   std::vector<std::uint64_t> first_;          ///< by cell: its first corner in corners_
   std::vector<Index> corners_;

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "polytope/polytopes.hpp"
+#include "polytope/polytope_faces.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::detail {
@@ -22,15 +22,15 @@ constexpr std::size_t kFaces = 2 * kCorners - 4;  // of a polyhedron with so man
 using Ring = std::vector<std::uint8_t>;
 
 template <class... Arguments>
-[[noreturn]] void fail(std::size_t cell, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+[[noreturn]] void fail(const CellPlace& cell, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   throw Error(ErrorCode::InvalidArgument,
-              fmt::format("cell {}: {}", cell, fmt::format(format, std::forward<Arguments>(arguments)...)));
+              fmt::format("{}: {}", cell.name(), fmt::format(format, std::forward<Arguments>(arguments)...)));
 }
 
 /// A polyhedron while it is checked.
 class Checked {
  public:
-  Checked(std::size_t cell, std::size_t points, std::span<const Index> faces, std::span<const std::uint64_t> ends)
+  Checked(const CellPlace& cell, std::size_t points, std::span<const Index> faces, std::span<const std::uint64_t> ends)
       : cell_(cell) {
     if (ends.size() < 4 || ends.size() > kFaces)
       fail(cell_, "a polyhedron of {} faces; expected 4 to {}", ends.size(), kFaces);
@@ -206,7 +206,7 @@ class Checked {
 
   static constexpr std::uint8_t kNone = 255;
 
-  std::size_t cell_;
+  CellPlace cell_;
   std::vector<Index> corners_;
   std::vector<Ring> rings_;
   std::array<std::array<std::array<std::uint8_t, 2>, kCorners>, kCorners> faces_at_;  ///< by ends, the smaller first
@@ -215,7 +215,11 @@ class Checked {
 
 }  // namespace
 
-RecognisedPolyhedron recognise_polyhedron(std::size_t cell, std::size_t points, std::span<const Index> faces,
+std::string CellPlace::name() const {
+  return facet ? fmt::format("cell {}, facet {}", cell, *facet) : fmt::format("cell {}", cell);
+}
+
+RecognisedPolyhedron recognise_polyhedron(const CellPlace& cell, std::size_t points, std::span<const Index> faces,
                                           std::span<const std::uint64_t> ends) {
   return Checked(cell, points, faces, ends).recognise();
 }

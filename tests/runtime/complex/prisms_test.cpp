@@ -17,16 +17,15 @@
 #include <utility>
 #include <vector>
 
-#include "ambiguity/face_estimator.hpp"
 #include "compare.hpp"
 #include "complex/cell_groups.hpp"
 #include "complex/complex_cases.hpp"
 #include "complex/polyhedral_cases.hpp"
+#include "complex/solid_cases.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
 #include "polytope/polygon_prisms.hpp"
 #include "polytope/polytopes.hpp"
-#include "prisms/prism_cell.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/measure.hpp"
@@ -37,139 +36,8 @@ namespace tegl {
 namespace {
 
 using namespace test;
-using detail::PrismCell;
 
 // ---------------------------------------------------------------------------------------------------- single cells
-
-/// A vertex as the crossed edges around it: its own, or those whose barycentre it is.
-using Around = std::set<std::array<unsigned, 2>>;
-/// A tetrahedron by its sorted vertices; the last entry is 1 for an odd order.
-using Named = std::pair<std::array<Around, 4>, int>;
-
-Named named(std::array<Around, 4> t, bool flip) {
-  const int sign = tile::sort_vertices(t) * (flip ? -1 : 1);
-  return {t, sign < 0 ? 1 : 0};
-}
-
-/// Tetrahedra by numbers of their vertices, and how they are called.
-struct CellContourOf {
-  std::vector<std::array<std::size_t, 4>> tetrahedra = {};
-  std::map<std::size_t, Around> around = {};
-  bool has_sides = false, has_cones = false;
-
-  [[nodiscard]] std::multiset<Named> named_tetrahedra(bool flip) const {
-    std::multiset<Named> result;
-    for (const auto& t : tetrahedra)
-      result.insert(named({around.at(t[0]), around.at(t[1]), around.at(t[2]), around.at(t[3])}, flip));
-    return result;
-  }
-  /// The triangles of one tetrahedron only, oriented, by names.
-  [[nodiscard]] std::map<std::array<Around, 3>, int> boundary(bool flip) const {
-    std::map<std::array<std::size_t, 3>, std::pair<int, int>> triangles;  // count and sum of signs
-    for (const auto& t : tetrahedra)
-      for (std::size_t i = 0; i < 4; ++i) {
-        std::array<std::size_t, 3> triangle{};
-        for (std::size_t k = 0, j = 0; k < 4; ++k)
-          if (k != i) triangle[j++] = t[k];
-        const int sign = tile::sort_vertices(triangle) * (i % 2 == 0 ? 1 : -1);
-        auto& [count, sum] = triangles[triangle];
-        ++count;
-        sum += sign;
-      }
-    std::map<std::array<Around, 3>, int> result;
-    for (const auto& [triangle, uses] : triangles) {
-      EXPECT_LE(uses.first, 2);
-      EXPECT_EQ(uses.first == 2, uses.second == 0);
-      if (uses.first != 1) continue;
-      std::array<Around, 3> t{around.at(triangle[0]), around.at(triangle[1]), around.at(triangle[2])};
-      const int sign = tile::sort_vertices(t) * uses.second * (flip ? -1 : 1);
-      EXPECT_TRUE(result.emplace(t, sign).second);
-    }
-    return result;
-  }
-  [[nodiscard]] int euler() const {
-    std::array<std::set<std::vector<std::size_t>>, 4> faces;
-    for (auto t : tetrahedra) {
-      std::sort(t.begin(), t.end());
-      for (unsigned s = 1; s < 16; ++s) {
-        std::vector<std::size_t> face;
-        for (unsigned i = 0; i < 4; ++i)
-          if ((s >> i & 1u) != 0) face.push_back(t[i]);
-        faces[face.size() - 1].insert(face);
-      }
-    }
-    const auto count = [&](std::size_t d) { return static_cast<int>(faces[d].size()); };
-    return count(0) - count(1) + count(2) - count(3);
-  }
-};
-
-/// Number of connected components.
-std::size_t components_of(const CellContourOf& contour) {
-  std::map<std::size_t, std::size_t> parent;
-  const auto root = [&](std::size_t v) {
-    while (parent.at(v) != v) v = parent.at(v);
-    return v;
-  };
-  for (const auto& t : contour.tetrahedra)
-    for (const std::size_t v : t) {
-      parent.try_emplace(v, v);
-      parent[root(v)] = root(t[0]);
-    }
-  return static_cast<std::size_t>(
-      std::count_if(parent.begin(), parent.end(), [](const auto& each) { return each.first == each.second; }));
-}
-
-CellContourOf prism_by_engine(tile::FacetBuilder& builder, tile::Signature signature,
-                              const tile::Resolution& resolution) {
-  const tile::TileFacets& facets = builder.build(signature, resolution);
-  CellContourOf contour;
-  const auto edge = [&](std::size_t v) {
-    const tile::Signature corners = builder.lattice().faces()[facets.vertices[v].face].corners;
-    return std::array{static_cast<unsigned>(std::countr_zero(corners)),
-                      63u - static_cast<unsigned>(std::countl_zero(corners))};
-  };
-  const auto is_on_edge = [&](std::size_t v) { return facets.vertices[v].kind == tile::VertexKind::edge; };
-  for (std::size_t v = 0; v < facets.vertices.size(); ++v) {
-    Around& around = contour.around[v];
-    if (is_on_edge(v)) around.insert(edge(v));
-    if (facets.vertices[v].kind != tile::VertexKind::barycentre) continue;
-    for (const auto& simplex : facets.vertices[v].of)
-      for (int i = 0; i < tile::size(simplex); ++i)
-        if (is_on_edge(simplex[static_cast<std::size_t>(i)])) around.insert(edge(simplex[static_cast<std::size_t>(i)]));
-  }
-  for (const tile::Facet& facet : facets.facets) {
-    const bool is_side = facet.filling == tile::Filling::side;
-    contour.has_sides = contour.has_sides || is_side;
-    contour.has_cones = contour.has_cones || !is_side;
-    for (const auto& s : facet.simplices) contour.tetrahedra.push_back({s[0], s[1], s[2], s[3]});
-  }
-  return contour;
-}
-
-CellContourOf prism_by_library(const PrismCell& cell, const detail::PolytopeShape& shape) {
-  CellContourOf contour;
-  contour.has_sides = !cell.sides().empty();
-  const auto edge = [&](PrismCell::Local v) {
-    const auto& [a, b] = shape.edges()[v];
-    return std::array{unsigned{std::min(a, b)}, unsigned{std::max(a, b)}};
-  };
-  for (const auto& t : cell.tetrahedra()) {
-    auto& to = contour.tetrahedra.emplace_back();
-    for (std::size_t k = 0; k < 4; ++k) {
-      to[k] = t[k];
-      Around& around = contour.around[t[k]];
-      if (t[k] < PrismCell::kShared) {
-        around.insert(edge(t[k]));
-      } else if (t[k] < PrismCell::kSides) {
-        const bool is_shared = t[k] < PrismCell::kCones;
-        const auto& inner = is_shared ? cell.shared()[t[k] - std::size_t{PrismCell::kShared}]
-                                      : cell.cones()[t[k] - std::size_t{PrismCell::kCones}];
-        for (const PrismCell::Local v : inner.points) around.insert(edge(v));
-      }
-    }
-  }
-  return contour;
-}
 
 /// The prism over a polyhedron, which may be one with a table: as a cell, and for the engine.
 struct EnginePrism {
@@ -205,55 +73,9 @@ struct EnginePrism {
   }
 };
 
-/// Compares contours of the prism over a polyhedron. Returns how many have copied sides.
-std::size_t compare_with_engine(const CellFaces3& faces, std::size_t corners, std::uint64_t step) {
+std::size_t compare_prism_with_engine(const CellFaces3& faces, std::size_t corners, std::uint64_t step) {
   EnginePrism prism(faces, corners);
-  const detail::Polytopes& prisms = prism.prisms;
-  tile::FacetBuilder& builder = prism.builder;
-  const std::uint64_t count = std::uint64_t{1} << (2 * corners);
-  std::mt19937_64 random(corners);
-  std::size_t compared = 0, reversed = 0, sides = 0, fewer = 0;
-  for (const bool high : {false, true}) {
-    detail::PolytopeRules rules;
-    rules.joins_high = high;
-    rules.is_compact = false;
-    detail::PolytopeRules compact_rules = rules;
-    compact_rules.is_compact = true;
-    PrismCell cell(rules), compact(compact_rules);
-    for (std::uint64_t s = step == 1 ? 1 : 1 + random() % step; s + 1 < count; s += step) {
-      std::vector<double> values;
-      for (std::size_t v = 0; v < 2 * corners; ++v) values.push_back((s >> v & 1u) != 0 ? 1.0 : -1.0);
-      cell.build(prisms.shape(0), prisms.cell(0), values.data());
-      const auto alternative = high ? tile::Alternative::high : tile::Alternative::low;
-      const CellContourOf expected = prism_by_engine(builder, s, {{}, alternative});
-      const CellContourOf contour = prism_by_library(cell, prisms.shape(0));
-      const auto sigma = expected.boundary(false);
-      const bool flip = contour.boundary(false) != sigma;
-      EXPECT_EQ(sigma, contour.boundary(flip)) << s;
-      EXPECT_EQ(expected.has_sides, contour.has_sides) << s;
-      EXPECT_EQ(expected.euler(), contour.euler()) << s;
-      const std::size_t components = components_of(expected);
-      EXPECT_EQ(components, components_of(contour)) << s;
-      ++compared;
-      reversed += flip ? 1 : 0;
-      sides += contour.has_sides ? 1 : 0;
-      compact.build(prisms.shape(0), prisms.cell(0), values.data());
-      const CellContourOf other = prism_by_library(compact, prisms.shape(0));
-      if (!contour.has_sides) {
-        EXPECT_EQ(expected.named_tetrahedra(false), contour.named_tetrahedra(flip)) << s;
-        fewer += other.tetrahedra.size() < contour.tetrahedra.size() ? 1 : 0;
-        EXPECT_LE(other.tetrahedra.size(), contour.tetrahedra.size()) << s;
-      }
-      // compact: other diagonals, the same topology
-      EXPECT_EQ(expected.euler(), other.euler()) << s;
-      EXPECT_EQ(components, components_of(other)) << s;
-      (void)other.boundary(false);  // tests the neighbours of triangles
-      if (::testing::Test::HasFailure()) return sides;
-    }
-  }
-  EXPECT_TRUE(reversed == 0 || reversed == compared);  // the lattice has one orientation
-  EXPECT_GT(3 * fewer, 2 * (compared - sides));
-  return sides;
+  return compare_with_engine(prism.prisms, prism.builder, step);
 }
 
 CellFaces3 oriented_faces(CellType type) {
@@ -289,9 +111,9 @@ CellFaces3 oriented_faces(CellType type) {
 }
 
 TEST(Prisms, AllContoursOverTetrahedraPyramidsAndWedgesAreThoseOfTheEngine) {
-  EXPECT_EQ(0u, compare_with_engine(oriented_faces(CellType::tetrahedron), 4, 1));
-  EXPECT_EQ(24u, compare_with_engine(oriented_faces(CellType::pyramid), 5, 1));
-  EXPECT_EQ(96u, compare_with_engine(oriented_faces(CellType::wedge), 6, 1));
+  EXPECT_EQ(0u, compare_prism_with_engine(oriented_faces(CellType::tetrahedron), 4, 1));
+  EXPECT_EQ(24u, compare_prism_with_engine(oriented_faces(CellType::pyramid), 5, 1));
+  EXPECT_EQ(96u, compare_prism_with_engine(oriented_faces(CellType::wedge), 6, 1));
 }
 
 /// The faces of a cell as the library orients and numbers them.
@@ -311,45 +133,8 @@ TEST(Prisms, ContoursOverLargerPolyhedraAreThoseOfTheEngine) {
         std::pair{truncated_octahedron_points(), std::uint64_t{4000000000039}}}) {
     std::size_t corners = 0;
     const CellFaces3 faces = faces_by_library(hull(points), corners);
-    (void)compare_with_engine(faces, corners, step);
+    (void)compare_prism_with_engine(faces, corners, step);
   }
-}
-
-/// Compares the topology of prisms with random values by the rule that decides each polygon by its mean, and joins
-/// nothing else. Returns in how many the engine copies a side and cones a sphere.
-std::size_t compare_separate_components(const CellFaces3& faces, std::size_t corners, std::size_t count) {
-  EnginePrism prism(faces, corners);
-  const std::vector<tile::Face>& of_lattice = prism.builder.lattice().faces();
-  std::mt19937_64 random(corners);
-  std::size_t mixed = 0;
-  detail::PolytopeRules rules;
-  rules.rule = detail::face_rule(Ambiguity::squares);
-  for (std::size_t c = 0; c < count; ++c) {
-    std::vector<double> values(2 * corners);
-    tile::Signature signature = 0;
-    for (std::size_t v = 0; v < values.size(); ++v) {
-      values[v] = static_cast<double>(random() >> 11) * 0x1p-52 - 1.0;
-      signature |= tile::Signature{values[v] >= 0.0} << v;
-    }
-    std::vector<tile::Choice> choices(of_lattice.size(), tile::Choice::separate);
-    for (std::size_t f = 0; f < of_lattice.size(); ++f) {
-      double sum = 0.0;
-      for (std::size_t v = 0; v < values.size(); ++v) sum += (of_lattice[f].corners >> v & 1u) != 0 ? values[v] : 0.0;
-      if (of_lattice[f].dim == 2) choices[f] = sum >= 0.0 ? tile::Choice::high : tile::Choice::low;
-    }
-    const CellContourOf expected = prism_by_engine(prism.builder, signature, {choices, tile::Alternative::low});
-    mixed += expected.has_sides && expected.has_cones ? 1 : 0;
-    for (const bool is_compact : {false, true}) {
-      rules.is_compact = is_compact;
-      PrismCell cell(rules);
-      cell.build(prism.prisms.shape(0), prism.prisms.cell(0), values.data());
-      const CellContourOf contour = prism_by_library(cell, prism.prisms.shape(0));
-      EXPECT_EQ(expected.euler(), contour.euler()) << signature;
-      EXPECT_EQ(components_of(expected), components_of(contour)) << signature;
-      (void)contour.boundary(false);  // tests the neighbours of triangles
-    }
-  }
-  return mixed;
 }
 
 /// Spheres beside the same region as a component of another kind are rare.
@@ -357,7 +142,8 @@ TEST(Prisms, ComponentsBesideOneRegionStaySeparate) {
   for (const auto& [points, count] : {std::pair{prism_points(6), 1000u}, std::pair{dodecahedron_points(), 100u}}) {
     std::size_t corners = 0;
     const CellFaces3 faces = faces_by_library(hull(points), corners);
-    EXPECT_GT(compare_separate_components(faces, corners, count), 0u);
+    EnginePrism prism(faces, corners);
+    EXPECT_GT(compare_separate_components(prism.prisms, prism.builder, count), 0u);
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The contours of prisms over polyhedra, built when an extraction meets the cells.
+// The contours of 4D polytopes, built when an extraction meets the cells.
 #pragma once
 
 #include <span>
@@ -10,8 +10,9 @@
 
 namespace tegl::detail {
 
-/// As build_polytope_contours, for polytopes that are prisms over polyhedra (4D).
-[[nodiscard]] std::vector<PolytopeBlock> build_prism_contours(const Polytopes& prisms, std::span<const double> values,
+/// As build_polytope_contours, for 4D polytopes.
+[[nodiscard]] std::vector<PolytopeBlock> build_solid_contours(const Polytopes& polytopes,
+                                                              std::span<const double> values,
                                                               const PolytopeRules& rules,
                                                               const std::vector<Index>* listed,
                                                               const WorkOptions& work);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Builds the contour of a prism over a polyhedron: the contours in its facets, and the filling of its inside.
-#include "prisms/prism_cell.hpp"
+// Builds the contour of a 4D polytope: the contours in its facets, and the filling of its inside.
+#include "prisms/solid_cell.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -25,12 +25,12 @@ Triangulation triangulation_of(const PolytopeRules& rules) noexcept {
 
 }  // namespace
 
-std::optional<std::size_t> fan_of_loop(const PolytopeRules& rules, const PrismFacet& facet,
+std::optional<std::size_t> fan_of_loop(const PolytopeRules& rules, const SolidFacet& facet,
                                        std::span<const std::uint8_t> loop, const Index* points) {
   if (loop.size() == 3) return 0;
   if (!rules.is_compact) return std::nullopt;
   std::size_t start = 0;
-  if (facet.kind == PrismFacet::Kind::end)
+  if (facet.kind == SolidFacet::Kind::end)
     return find_fan(facet.shape, loop, start) ? std::optional(start) : std::nullopt;
   const auto ends = [&](std::size_t i) -> std::pair<Index, Index> {
     const auto& [a, b] = facet.shape.edges()[loop[i]];
@@ -42,22 +42,21 @@ std::optional<std::size_t> fan_of_loop(const PolytopeRules& rules, const PrismFa
   return best;
 }
 
-PrismCell::PrismCell(const PolytopeRules& rules)
+SolidCell::SolidCell(const PolytopeRules& rules)
     : rules_(rules),
       fillings_(tables::CellShape::hexahedron, rules.joins_high),
       cubes_(ResolvedCubes::instance(triangulation_of(rules))),
-      regions_of_(CubeRegions::instance(triangulation_of(rules))),
-      around_(kCones) {}
+      regions_of_(CubeRegions::instance(triangulation_of(rules))) {}
 
-void PrismCell::load(const PolytopeFaces& shape) {
+void SolidCell::load(const PolytopeFaces& shape) {
   shape_ = &shape;
-  facets_ = facets_of_prism(shape);
-  corners_of_face_.assign(shape.face_count(), 0);
-  for (std::size_t f = 0; f < shape.face_count(); ++f)
-    for (const std::uint8_t v : shape.ring(f)) corners_of_face_[f] |= std::uint64_t{1} << v;
+  facets_ = facets_of_solid(shape);
+  is_in_facet_.assign(facets_.size() * shape.edges().size(), false);
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    for (const std::uint16_t e : facets_[f].edges) is_in_facet_[f * shape.edges().size() + e] = true;
 }
 
-void PrismCell::build(const PolytopeFaces& shape, const Index* points, const double* values,
+void SolidCell::build(const PolytopeFaces& shape, const Index* points, const double* values,
                       const EntangledPrism& entangled) {
   if (&shape != shape_) load(shape);
   points_ = points;
@@ -67,15 +66,18 @@ void PrismCell::build(const PolytopeFaces& shape, const Index* points, const dou
   tetrahedra_.clear();
   for (auto* const inner : {&shared_, &cones_, &sides_, &collars_}) inner->clear();
   contours_.assign(facets_.size(), std::nullopt);
+  tunnels_.assign(facets_.size(), std::nullopt);
   for (std::size_t f = 0; f < facets_.size(); ++f) add_contour(f);
-  Components components = components_of(sigma_, kCones);
+  first_cone_ = static_cast<Local>(first_shared() + shared_.size());
+  Components components = components_of(sigma_, first_cone_);
+  first_corner_ = static_cast<Local>(first_cone_ + components.size());  // one cone for each at most
   if (std::any_of(components.begin(), components.end(), [](const auto& c) { return !is_sphere(c.second); }))
     copy_regions(rules_.rule.has_value() || !rules_.joins_high, components);
   for (const auto& [root, component] : components) add_sphere(component, vertices_of(component));
 }
 
-void PrismCell::add_contour(std::size_t f) {
-  const PrismFacet& facet = facets_[f];
+void SolidCell::add_contour(std::size_t f) {
+  const SolidFacet& facet = facets_[f];
   std::array<double, 2 * kPolytopeCorners> at;
   std::size_t high = 0;
   for (std::size_t v = 0; v < facet.corners.size(); ++v) {
@@ -83,27 +85,72 @@ void PrismCell::add_contour(std::size_t f) {
     high += at[v] >= rules_.isovalue ? 1 : 0;
   }
   if (high == 0 || high == facet.corners.size()) return;
-  if (facet.kind == PrismFacet::Kind::hexahedron && (rules_.is_compact || rules_.rule)) {
+  if (facet.kind == SolidFacet::Kind::hexahedron && (rules_.is_compact || rules_.rule)) {
     unsigned signature = 0;
     for (unsigned v = 0; v < 8; ++v) signature |= (at[kHexahedronCorners[v]] >= rules_.isovalue ? 1u : 0u) << v;
     return rules_.rule ? add_cube(f, signature) : add_filling(f, signature);
   }
-  loops_.for_each(facet.shape, at.data(), rules_, [&](std::span<const std::uint8_t> loop) { add_loop(f, loop); });
+  const auto tunnel = tunnel_in(f, {at.data(), facet.corners.size()});
+  loops_.for_each(facet.shape, at.data(), rules_, [&](std::span<const std::uint8_t> loop) {
+    if (!tunnel)
+      add_loop(f, loop);
+    else if (!tunnels_[f])  // the ring begins at the first one of both loops
+      add_tunnel(f, *tunnel, loop);
+  });
 }
 
-void PrismCell::add_loop(std::size_t f, std::span<const std::uint8_t> loop) {
-  const PrismFacet& facet = facets_[f];
+/// The pair of opposite corners that a tunnel connects in an octahedron that is decided from the data.
+std::optional<LonePair> SolidCell::tunnel_in(std::size_t f, std::span<const double> values) const noexcept {
+  if (facets_[f].kind != SolidFacet::Kind::octahedron || !rules_.rule || rules_.rule->separates) return std::nullopt;
+  unsigned signature = 0;
+  for (unsigned v = 0; v < 6; ++v) signature |= (values[v] >= rules_.isovalue ? 1u : 0u) << v;
+  const auto pair = lone_pair(signature, 3);
+  return pair && has_tunnel_between(*pair, values, rules_.isovalue) ? pair : std::nullopt;
+}
+
+/// The vertex on the edge between two corners of a facet.
+SolidCell::Local SolidCell::in_facet(std::size_t f, std::uint8_t a, std::uint8_t b) const noexcept {
+  const std::array<std::uint8_t, 2> ends = {std::min(a, b), std::max(a, b)};
+  const auto& edges = facets_[f].shape.edges();
+  return facets_[f].edges[static_cast<std::size_t>(std::find(edges.begin(), edges.end(), ends) - edges.begin())];
+}
+
+/// The ring of four quadrilaterals between the loops around two opposite corners of an octahedron, each coned from its
+/// barycentre. `loop`: around one of the corners.
+void SolidCell::add_tunnel(std::size_t f, const LonePair& pair, std::span<const std::uint8_t> loop) {
+  tunnels_[f] = {pair, static_cast<Local>(first_shared() + shared_.size())};
+  const auto& edges = facets_[f].shape.edges();
+  const auto is_lone = [&](std::uint8_t v) { return v / 2u == pair.pair; };
+  const std::uint8_t near = is_lone(edges[loop[0]][0]) ? edges[loop[0]][0] : edges[loop[0]][1];
+  const auto far = static_cast<std::uint8_t>(near ^ 1u);
+  const auto beside = [&](std::size_t i) -> std::uint8_t {  // the end of an edge of the loop between both corners
+    const auto& [a, b] = edges[loop[i % loop.size()]];
+    return a == near ? b : a;
+  };
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const std::uint8_t from = beside(i), to = beside(i + 1);
+    const auto centre = static_cast<Local>(first_shared() + shared_.size());
+    Inner& inner = shared_.emplace_back();
+    inner.facet = static_cast<std::uint16_t>(f);
+    inner.points = {in_facet(f, near, from), in_facet(f, near, to), in_facet(f, far, to), in_facet(f, far, from)};
+    for (std::size_t k = 0; k < 4; ++k) sigma_.push_back({{centre, inner.points[k], inner.points[(k + 1) % 4]}, f});
+  }
+}
+
+void SolidCell::add_loop(std::size_t f, std::span<const std::uint8_t> loop) {
+  const SolidFacet& facet = facets_[f];
   const std::size_t size = loop.size();
   const auto vertex = [&](std::size_t i) { return Local{facet.edges[loop[i % size]]}; };
-  const bool is_coned = f < 2 && std::binary_search(entangled_.coned[f].begin(), entangled_.coned[f].end(), loop[0]);
+  const bool is_coned = facet.kind == SolidFacet::Kind::end &&
+                        std::binary_search(entangled_.coned[f].begin(), entangled_.coned[f].end(), loop[0]);
   if (const auto start = fan_of_loop(rules_, facet, loop, points_); start && !is_coned) {
     for (std::size_t i = 1; i + 1 < size; ++i)
       sigma_.push_back({{vertex(*start), vertex(*start + i), vertex(*start + i + 1)}, f});
     return;
   }
-  const auto centre = static_cast<Local>(kShared + shared_.size());
+  const auto centre = static_cast<Local>(first_shared() + shared_.size());
   Inner& inner = shared_.emplace_back();
-  inner.facet = static_cast<std::uint8_t>(f);
+  inner.facet = static_cast<std::uint16_t>(f);
   for (std::size_t i = 0; i < size; ++i) {
     inner.points.push_back(vertex(i));
     sigma_.push_back({{centre, vertex(i), vertex(i + 1)}, f});
@@ -111,20 +158,16 @@ void PrismCell::add_loop(std::size_t f, std::span<const std::uint8_t> loop) {
 }
 
 /// The vertex on the edge between two corners of a hexahedron, as the tables number them.
-PrismCell::Local PrismCell::on_edge(std::size_t f, unsigned p, unsigned q) const noexcept {
-  const PrismFacet& facet = facets_[f];
-  const auto [a, b] = std::minmax(kHexahedronCorners[p], kHexahedronCorners[q]);
-  const std::array<std::uint8_t, 2> ends = {a, b};
-  const auto& edges = facet.shape.edges();
-  return facet.edges[static_cast<std::size_t>(std::find(edges.begin(), edges.end(), ends) - edges.begin())];
+SolidCell::Local SolidCell::on_edge(std::size_t f, unsigned p, unsigned q) const noexcept {
+  return in_facet(f, kHexahedronCorners[p], kHexahedronCorners[q]);
 }
 
-PrismCell::Local PrismCell::corner_of(std::size_t f, unsigned v) const noexcept {
-  return static_cast<Local>(kCorners + facets_[f].corners[kHexahedronCorners[v]]);
+SolidCell::Local SolidCell::corner_of(std::size_t f, unsigned v) const noexcept {
+  return static_cast<Local>(first_corner_ + facets_[f].corners[kHexahedronCorners[v]]);
 }
 
 /// The compact contour in a hexahedron by a fixed rule.
-void PrismCell::add_filling(std::size_t f, unsigned signature) {
+void SolidCell::add_filling(std::size_t f, unsigned signature) {
   const tables::CellTable& table = tables::cell_table(tables::CellShape::hexahedron, Triangulation::compact);
   std::array<Index, 8> points;
   for (unsigned v = 0; v < 8; ++v) points[v] = points_[facets_[f].corners[kHexahedronCorners[v]]];
@@ -134,7 +177,7 @@ void PrismCell::add_filling(std::size_t f, unsigned signature) {
 }
 
 /// The corners and edges in a set of a frame's corners (bit v) and edges (bit 8 + e).
-std::vector<PrismCell::Local> PrismCell::points_of(std::size_t f, const CubeFrame& frame, std::uint32_t mask) const {
+std::vector<SolidCell::Local> SolidCell::points_of(std::size_t f, const CubeFrame& frame, std::uint32_t mask) const {
   std::vector<Local> points;
   for (unsigned v = 0; v < 8; ++v)
     if ((mask >> v & 1u) != 0) points.push_back(corner_of(f, frame.corner(v)));
@@ -146,7 +189,7 @@ std::vector<PrismCell::Local> PrismCell::points_of(std::size_t f, const CubeFram
 }
 
 /// The contour in a hexahedron whose ambiguities are decided from the data.
-void PrismCell::add_cube(std::size_t f, unsigned signature) {
+void SolidCell::add_cube(std::size_t f, unsigned signature) {
   std::array<double, 8> at;
   std::array<Index, 8> points;
   for (unsigned v = 0; v < 8; ++v) {
@@ -169,11 +212,11 @@ void PrismCell::add_cube(std::size_t f, unsigned signature) {
   const tile::Choice choice = cube_key(*rules_.rule, at, rules_.isovalue, signature).choice();
   const CubeContour& of =
       contours_[f].emplace(CubeContour{frame, ResolvedCubes::list(frame.signature(signature), squares, choice),
-                                       static_cast<Local>(kShared + shared_.size())});
+                                       static_cast<Local>(first_shared() + shared_.size())});
   for (unsigned j = 0; j < cubes_.own_vertices(of.list); ++j) {
     const std::uint32_t mask = cubes_.mask(of.list, j);
     Inner& inner = shared_.emplace_back();
-    inner.facet = static_cast<std::uint8_t>(f);
+    inner.facet = static_cast<std::uint16_t>(f);
     inner.is_in_cube = j >= cubes_.summary(of.list).barycentres;
     if (!inner.is_in_cube) inner.points = points_of(f, frame, mask);
     for (unsigned e = 0; e < 12 && inner.is_in_cube; ++e) {
@@ -201,25 +244,20 @@ void PrismCell::add_cube(std::size_t f, unsigned signature) {
   }
 }
 
-bool PrismCell::is_in_facet(Local edge, std::size_t f) const noexcept {
-  const std::size_t base = shape_->base_edges();
-  if (edge >= 2 * base) return f >= 2 && (corners_of_face_[f - 2] >> (edge - 2 * base) & 1u) != 0;
-  const std::size_t end = edge < base ? 0 : 1;
-  if (f < 2) return f == end;
-  const auto& faces = shape_->faces_at(edge - end * base);
-  return f - 2 == faces[0] || f - 2 == faces[1];
+bool SolidCell::is_in_facet(Local edge, std::size_t f) const noexcept {
+  return is_in_facet_[f * shape_->edges().size() + edge];
 }
 
-/// The vertex of a sphere that its cone starts at; kLocals: its barycentre.
-PrismCell::Local PrismCell::apex_of(const Component& component, const std::vector<Local>& vertices) {
-  if ((!rules_.is_compact || entangled_.is_one) && component.size() > 4) return kLocals;
-  for (const Local v : vertices) around_[v] = 0;
+/// The vertex of a sphere that its cone starts at; kNone: its barycentre.
+SolidCell::Local SolidCell::apex_of(const Component& component, const std::vector<Local>& vertices) {
+  if ((!rules_.is_compact || entangled_.is_one) && component.size() > 4) return kNone;
+  around_.assign(first_cone_, 0);
   for (const Piece& piece : component)
     for (const Local v : piece.triangle) ++around_[v];
-  Local apex = kLocals;
+  Local apex = kNone;
   unsigned most = 0;  // triangles at the apex, which need no tetrahedra
   for (const Local v : vertices) {
-    if (v >= kShared) break;
+    if (v >= first_shared()) break;
     if (around_[v] <= most) continue;
     const bool is_apex =
         component.size() == 4 || std::all_of(component.begin(), component.end(), [&](const Piece& piece) {
@@ -231,17 +269,18 @@ PrismCell::Local PrismCell::apex_of(const Component& component, const std::vecto
 }
 
 /// The tetrahedron between a triangle and a vertex inside the cell, with its positive side towards high.
-PrismCell::Tetrahedron PrismCell::cone_of(const Piece& piece, Local apex) const noexcept {
+SolidCell::Tetrahedron SolidCell::cone_of(const Piece& piece, Local apex) const noexcept {
   return detail::cone_of(piece.triangle, facets_[piece.facet].is_inverted, apex);
 }
 
-void PrismCell::add_sphere(const Component& component, const std::vector<Local>& vertices) {
+void SolidCell::add_sphere(const Component& component, const std::vector<Local>& vertices) {
   Local apex = apex_of(component, vertices);
-  const bool is_inside = apex == kLocals;
+  const bool is_inside = apex == kNone;
   if (is_inside) {
-    apex = static_cast<Local>(kCones + cones_.size());
+    apex = static_cast<Local>(first_cone_ + cones_.size());
     std::vector<Local>& points = cones_.emplace_back().points;
-    std::copy_if(vertices.begin(), vertices.end(), std::back_inserter(points), [](Local v) { return v < kShared; });
+    std::copy_if(vertices.begin(), vertices.end(), std::back_inserter(points),
+                 [this](Local v) { return v < first_shared(); });
   }
   for (const Piece& piece : component)
     if (is_inside || !has_vertex(piece.triangle, apex)) tetrahedra_.push_back(cone_of(piece, apex));

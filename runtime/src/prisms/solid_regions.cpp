@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Fills components of Sigma with copies of the regions beside them. A region of a facet is a cone, as each of its
-// polygons is a disc; in a hexahedron with a tunnel it is the table's (CubeRegions).
+// polygons is a disc; in a hexahedron with a tunnel it is the table's (CubeRegions), around a tunnel in an octahedron a
+// ring of cones.
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
-#include "prisms/prism_cell.hpp"
+#include "prisms/solid_cell.hpp"
 #include "regions/decided_regions.hpp"
 #include "regions/facet_regions.hpp"
 #include "regions/oriented_tetrahedra.hpp"
@@ -17,18 +18,18 @@
 
 namespace tegl::detail {
 
-bool PrismCell::has_tunnel(std::size_t f) const noexcept {
+bool SolidCell::has_tunnel(std::size_t f) const noexcept {
   return contours_[f] && detail::has_tunnel(contours_[f]->list);
 }
 
 /// Fills components with copies of the regions beside them on one side, and removes them: those that are no spheres.
-void PrismCell::copy_regions(bool high, Components& components) {
+void SolidCell::copy_regions(bool high, Components& components) {
   centres_.clear();
   is_high_.clear();
   for (std::size_t v = 0; v < shape_->corner_count(); ++v) is_high_.push_back(values_[v] >= rules_.isovalue);
   DisjointSets sets = find_regions(high);
   const auto region_of = [&](const Component& component) { return sets.find(first_of(component)); };
-  std::vector<bool> is_copied(kLocals);
+  std::vector<bool> is_copied(regions_end());
   std::vector<Index> passing;  // regions whose copies pass spheres beside them
   for (const auto& [root, component] : components)
     if (!is_sphere(component)) is_copied[region_of(component)] = true;
@@ -57,7 +58,7 @@ void PrismCell::copy_regions(bool high, Components& components) {
 
 /// Fills the components beside regions whose copies pass spheres, and removes them. A sphere that is alone beside the
 /// region behind it is filled with a copy of that region, nearer to the boundary, otherwise coned.
-void PrismCell::pass_spheres(bool high, DisjointSets& sets, const std::vector<Index>& passing, Components& components) {
+void SolidCell::pass_spheres(bool high, DisjointSets& sets, const std::vector<Index>& passing, Components& components) {
   const std::vector<Tetrahedron> regions = std::move(regions_);
   DisjointSets behind = find_regions(!high);
   std::map<Index, unsigned> around;  // components by region
@@ -80,42 +81,47 @@ void PrismCell::pass_spheres(bool high, DisjointSets& sets, const std::vector<In
 
 /// Fills the components beside a region that are no spheres: with a copy of the region as it were if everything behind
 /// the spheres was on its side.
-void PrismCell::copy_past_spheres(bool high, Index region, DisjointSets& sets, DisjointSets& behind,
+void SolidCell::copy_past_spheres(bool high, Index region, DisjointSets& sets, DisjointSets& behind,
                                   const Components& components) {
-  RegionParts parts(sets, behind, kLocals, region);
+  RegionParts parts(sets, behind, regions_end(), region);
   auto [sigma, boundary] = parts.pass_spheres(components);
   const std::vector<bool> is_high = is_high_;
   for (Index v = 0; v < is_high.size(); ++v)
-    if (is_high[v] != high && parts.is_passed(kCorners + v)) is_high_[v] = high;
+    if (is_high[v] != high && parts.is_passed(first_corner_ + v)) is_high_[v] = high;
   auto contours = contours_;
+  auto tunnels = tunnels_;
   for (std::size_t f = 0; f < contours.size(); ++f)
-    if (std::none_of(sigma.begin(), sigma.end(), [&](const Piece& piece) { return piece.facet == f; }))
+    if (std::none_of(sigma.begin(), sigma.end(), [&](const Piece& piece) { return piece.facet == f; })) {
       contours[f].reset();
+      tunnels[f].reset();
+    }
   sigma_.swap(sigma);
   contours_.swap(contours);
+  tunnels_.swap(tunnels);
   DisjointSets joined = find_regions(high);
   add_copies(tetrahedra_in(joined.find(first_of(boundary)), joined, regions_), boundary, false);
   is_high_ = is_high;
   sigma_.swap(sigma);
   contours_.swap(contours);
+  tunnels_.swap(tunnels);
 }
 
 /// Adds copies of tetrahedra, which keep the vertices of their boundary. `collars`: half as far from there as others.
-void PrismCell::add_copies(std::vector<Tetrahedron> copies, const Component& boundary, bool collars) {
-  std::vector<bool> is_kept(kLocals);
+void SolidCell::add_copies(std::vector<Tetrahedron> copies, const Component& boundary, bool collars) {
+  std::vector<bool> is_kept(regions_end());
   std::vector<Triangle> starts;
   for (const Piece& piece : boundary) {
-    starts.push_back(face_of(cone_of(piece, kLocals), 3));
+    starts.push_back(face_of(cone_of(piece, kNone), 3));
     for (const Local v : piece.triangle) is_kept[v] = true;
   }
-  std::vector<Local> copy_of(kSides);  // 0: no copy yet
+  std::vector<Local> copy_of(regions_end());  // 0: no copy yet
   std::vector<Inner>& inner = collars ? collars_ : sides_;
   for (Tetrahedron& t : copies)
     for (Local& v : t) {
       if (is_kept[v]) continue;
       if (copy_of[v] == 0) {
         copy_of[v] = static_cast<Local>((collars ? kCollars : kSides) + inner.size());
-        inner.emplace_back().points = v < kCentres ? std::vector<Local>{v} : centres_[v - kCentres];
+        inner.emplace_back().points = v < first_centre() ? std::vector<Local>{v} : centres_[v - first_centre()];
       }
       v = copy_of[v];
     }
@@ -123,42 +129,69 @@ void PrismCell::add_copies(std::vector<Tetrahedron> copies, const Component& bou
   tetrahedra_.insert(tetrahedra_.end(), copies.begin(), copies.end());
 }
 
-PrismCell::Local PrismCell::add_centre(std::vector<Local> points) {
+SolidCell::Local SolidCell::add_centre(std::vector<Local> points) {
   centres_.push_back(std::move(points));
-  return static_cast<Local>(kCentres + centres_.size() - 1);
+  return static_cast<Local>(regions_end() - 1);
 }
 
 /// Divides the regions of one side into tetrahedra, and returns those that are connected, by vertices.
-DisjointSets PrismCell::find_regions(bool high) {
+DisjointSets SolidCell::find_regions(bool high) {
   regions_.clear();
   fans_.clear();
   for (const bool tunnels : {true, false})  // the triangles in quadrilaterals are those beside tunnels
     for (std::size_t f = 0; f < facets_.size(); ++f)
       if (has_tunnel(f) == tunnels) tunnels ? add_cube_regions(f, high) : add_regions(f, high);
-  DisjointSets sets(kLocals);
+  DisjointSets sets(regions_end());
   for (const Tetrahedron& t : regions_)
     for (std::size_t k = 1; k < 4; ++k) sets.join(t[0], t[k]);
   return sets;
 }
 
-/// The regions of a facet in which all polygons are discs.
-void PrismCell::add_regions(std::size_t f, bool high) {
+/// The regions of a facet in which all polygons are discs, or of an octahedron.
+void SolidCell::add_regions(std::size_t f, bool high) {
   RegionSides<Local> sides;
   for (std::size_t face = 0; face < facets_[f].shape.face_count(); ++face)
     add_parts(f, face, high, sides.parts, sides.triangles);
   for (const Piece& piece : sigma_)
     if (piece.facet == f) sides.of_contour.push_back(piece.triangle);
+  if (tunnels_[f] && tunnels_[f]->pair.is_high != high) return add_ring(f, sides);
   cone_regions(
-      sides, kCorners, kCentres, [&](const std::vector<Local>& vertices) { return add_centre(vertices); }, regions_);
+      sides, first_corner_, first_centre(), [&](const std::vector<Local>& vertices) { return add_centre(vertices); },
+      regions_);
+}
+
+/// The region of an octahedron around a tunnel: between its four quadrilaterals and the boundary, in as many sectors.
+void SolidCell::add_ring(std::size_t f, const RegionSides<Local>& sides) {
+  for (std::size_t j = 0; j < 4; ++j) {
+    const auto centre = static_cast<Local>(tunnels_[f]->first_own + j);  // of the quadrilateral
+    const std::vector<Local> around = shared_[centre - std::size_t{first_shared()}].points;
+    // a sector has two of the corners between both ends of the tunnel, and walls to both neighbours
+    const auto corner = [&](Local edge) {
+      const auto& [a, b] = shape_->edges()[edge];
+      return static_cast<Local>(first_corner_ + (is_high_[a] == tunnels_[f]->pair.is_high ? b : a));
+    };
+    const Local from = corner(around[0]), to = corner(around[1]);
+    std::vector<Local> sector = around;
+    sector.insert(sector.end(), {from, to});
+    std::vector<Triangle> boundary = {{from, around[0], around[3]}, {to, around[1], around[2]}};
+    for (const Triangle& t : sides.triangles)
+      if (std::all_of(t.begin(), t.end(),
+                      [&](Local v) { return std::find(sector.begin(), sector.end(), v) != sector.end(); }))
+        boundary.push_back(t);
+    for (const Triangle& t : sides.of_contour)
+      if (has_vertex(t, centre)) boundary.push_back(t);
+    const Local apex = add_centre(sector);
+    for (const Triangle& t : boundary) regions_.push_back({t[0], t[1], t[2], apex});
+  }
 }
 
 /// The parts of a polygon on one side, with their triangles.
-void PrismCell::add_parts(std::size_t f, std::size_t face, bool high, std::vector<std::vector<Local>>& parts,
+void SolidCell::add_parts(std::size_t f, std::size_t face, bool high, std::vector<std::vector<Local>>& parts,
                           std::vector<Triangle>& triangles) const {
-  const PrismFacet& facet = facets_[f];
+  const SolidFacet& facet = facets_[f];
   const std::span<const std::uint8_t> ring = facet.shape.ring(face), edges = facet.shape.ring_edges(face);
   const std::size_t count = ring.size(), first = parts.size();
-  const auto corner = [&](std::size_t i) { return static_cast<Local>(kCorners + facet.corners[ring[i % count]]); };
+  const auto corner = [&](std::size_t i) { return static_cast<Local>(first_corner_ + facet.corners[ring[i % count]]); };
   const auto edge = [&](std::size_t i) { return Local{facet.edges[edges[i % count]]}; };
   const auto value = [&](std::size_t i) { return values_[facet.corners[ring[i % count]]]; };
   const auto is_in = [&](std::size_t i) { return is_high_[facet.corners[ring[i % count]]] == high; };
@@ -190,16 +223,16 @@ void PrismCell::add_parts(std::size_t f, std::size_t face, bool high, std::vecto
   }
 }
 
-bool PrismCell::is_in_square(Local v, const Square& square) const noexcept {
+bool SolidCell::is_in_square(Local v, const Square& square) const noexcept {
   const auto has_corner = [&](std::size_t corner) {
-    return std::find(square.begin(), square.end(), kCorners + corner) != square.end();
+    return std::find(square.begin(), square.end(), first_corner_ + corner) != square.end();
   };
-  if (v < kShared) return has_corner(shape_->edges()[v][0]) && has_corner(shape_->edges()[v][1]);
-  return v >= kCorners && v < kCentres && has_corner(v - std::size_t{kCorners});
+  if (v < first_shared()) return has_corner(shape_->edges()[v][0]) && has_corner(shape_->edges()[v][1]);
+  return v >= first_corner_ && v < first_centre() && has_corner(v - std::size_t{first_corner_});
 }
 
 /// The regions of a hexahedron with a tunnel.
-void PrismCell::add_cube_regions(std::size_t f, bool high) {
+void SolidCell::add_cube_regions(std::size_t f, bool high) {
   const CubeContour& contour = *contours_[f];
   const CubeFrame& frame = contour.frame;
   const auto corner = [&](unsigned v) { return corner_of(f, frame.corner(v)); };

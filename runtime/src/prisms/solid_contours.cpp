@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Builds the contours of prisms over polyhedra, block by block.
-#include "prisms/prism_contours.hpp"
+// Builds the contours of 4D polytopes, block by block.
+#include "prisms/solid_contours.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/workers.hpp"
-#include "prisms/prism_cell.hpp"
+#include "prisms/solid_cell.hpp"
 
 namespace tegl::detail {
 
@@ -63,14 +63,14 @@ ConedLoops find_coned_loops(const Polytopes& prisms, std::span<const double> val
 }
 
 /// Builds the contours of the cells of a block.
-class PrismBlockBuilder {
+class SolidBlockBuilder {
  public:
-  PrismBlockBuilder(const Polytopes& prisms, std::span<const double> values, const PolytopeRules& rules,
+  SolidBlockBuilder(const Polytopes& polytopes, std::span<const double> values, const PolytopeRules& rules,
                     const ConedLoops& coned, PolytopeBlock& block)
-      : prisms_(prisms), values_(values), rules_(rules), coned_(coned), block_(block), cell_(rules) {}
+      : polytopes_(polytopes), values_(values), rules_(rules), coned_(coned), block_(block), cell_(rules) {}
 
   void add(Index cell) {
-    const std::span<const Index> points = prisms_.points_of(cell);
+    const std::span<const Index> points = polytopes_.points_of(cell);
     std::size_t high = 0;
     bool is_missing = false;
     for (std::size_t v = 0; v < points.size(); ++v) {
@@ -81,8 +81,9 @@ class PrismBlockBuilder {
     if (is_missing) block_.missing.push_back(cell);
     if (is_missing || high == 0 || high == points.size()) return;
     ++block_.active;
-    const PolytopeFaces& shape = prisms_.shape(cell);
+    const PolytopeFaces& shape = polytopes_.shape(cell);
     cell_.build(shape, points.data(), at_.data(), entangled(cell));
+    vertex_on_.resize(shape.edges().size());
     for (std::size_t e = 0; e < shape.edges().size(); ++e) {
       const auto& [a, b] = shape.edges()[e];
       if ((at_[a] >= rules_.isovalue) == (at_[b] >= rules_.isovalue)) continue;
@@ -103,11 +104,12 @@ class PrismBlockBuilder {
 
   [[nodiscard]] EntangledPrism entangled(Index cell) const {
     EntangledPrism result;
-    result.is_one = prisms_.is_entangled(cell);
-    const auto c = static_cast<Index>(cell % prisms_.base_count()), k = static_cast<Index>(cell / prisms_.base_count());
+    result.is_one = polytopes_.is_entangled(cell);
+    if (!result.is_one) return result;
+    const auto c = static_cast<Index>(cell % polytopes_.base_count()),
+               k = static_cast<Index>(cell / polytopes_.base_count());
     for (const Index end : {0u, 1u})
-      if (const auto found = coned_.find({c, k + end}); result.is_one && found != coned_.end())
-        result.coned[end] = found->second;
+      if (const auto found = coned_.find({c, k + end}); found != coned_.end()) result.coned[end] = found->second;
     return result;
   }
 
@@ -116,76 +118,76 @@ class PrismBlockBuilder {
     const auto shared = static_cast<std::uint32_t>(block_.shared.size());
     const auto cones = static_cast<std::uint32_t>(block_.own_vertices.size());
     const auto sides = static_cast<std::uint32_t>(cones + cell_.cones().size());
-    for (const PrismCell::Inner& inner : cell_.shared()) add_shared(cell, inner, points);
-    for (const PrismCell::Inner& inner : cell_.cones()) add_inner(block_.own_vertices, Kind::mean, cell, inner, points);
-    for (const PrismCell::Inner& inner : cell_.sides())
+    for (const SolidCell::Inner& inner : cell_.shared()) add_shared(cell, inner, points);
+    for (const SolidCell::Inner& inner : cell_.cones()) add_inner(block_.own_vertices, Kind::mean, cell, inner, points);
+    for (const SolidCell::Inner& inner : cell_.sides())
       add_inner(block_.own_vertices, Kind::inwards, cell, inner, points);
-    for (const PrismCell::Inner& inner : cell_.collars())
+    for (const SolidCell::Inner& inner : cell_.collars())
       add_inner(block_.own_vertices, Kind::collar, cell, inner, points);
     const auto collars = static_cast<std::uint32_t>(sides + cell_.sides().size());
-    for (const PrismCell::Tetrahedron& t : cell_.tetrahedra()) {
+    for (const SolidCell::Tetrahedron& t : cell_.tetrahedra()) {
       auto& to = block_.tetrahedra.emplace_back();
       for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t v = t[k];
-        to[k] = v >= PrismCell::kCollars  ? PolytopeBlock::kOwn | (collars + v - PrismCell::kCollars)
-                : v >= PrismCell::kSides  ? PolytopeBlock::kOwn | (sides + v - PrismCell::kSides)
-                : v >= PrismCell::kCones  ? PolytopeBlock::kOwn | (cones + v - PrismCell::kCones)
-                : v >= PrismCell::kShared ? PolytopeBlock::kShared | (shared + v - PrismCell::kShared)
-                                          : vertex_on_[v];
+        to[k] = v >= SolidCell::kCollars    ? PolytopeBlock::kOwn | (collars + v - SolidCell::kCollars)
+                : v >= SolidCell::kSides    ? PolytopeBlock::kOwn | (sides + v - SolidCell::kSides)
+                : v >= cell_.first_cone()   ? PolytopeBlock::kOwn | (cones + v - cell_.first_cone())
+                : v >= cell_.first_shared() ? PolytopeBlock::kShared | (shared + v - cell_.first_shared())
+                                            : vertex_on_[v];
       }
     }
     block_.pieces.push_back({cell, static_cast<std::uint32_t>(block_.tetrahedra.size()), false});
   }
 
-  void add_shared(Index cell, const PrismCell::Inner& inner, std::span<const Index> points) {
-    const PrismFacet& facet = cell_.facets()[inner.facet];
+  void add_shared(Index cell, const SolidCell::Inner& inner, std::span<const Index> points) {
+    const SolidFacet& facet = cell_.facets()[inner.facet];
     const Kind kind = inner.is_in_cube ? Kind::in_cube : facet.is_tabled() ? Kind::polygon : Kind::loop;
     PolytopeBlock::InnerVertex& vertex = add_inner(block_.shared, kind, cell, inner, points);
     vertex.mask = inner.mask;
     if (kind == Kind::in_cube) {
       for (std::size_t v = 0; v < 8; ++v) vertex.points[v] = points[facet.corners[kHexahedronCorners[v]]];
     } else if (kind == Kind::loop) {
-      const std::array<Index, 4> key = key_of_facet(facet, points.data(), prisms_.entangled_base(cell));
+      const std::array<Index, 4> key = key_of_facet(facet, points.data(), polytopes_.entangled_base(cell));
       std::copy(key.begin(), key.end(), vertex.points.begin());
     }
   }
 
   PolytopeBlock::InnerVertex& add_inner(std::vector<PolytopeBlock::InnerVertex>& to, Kind kind, Index cell,
-                                        const PrismCell::Inner& inner, std::span<const Index> points) {
+                                        const SolidCell::Inner& inner, std::span<const Index> points) {
     PolytopeBlock::InnerVertex& vertex = to.emplace_back();
     vertex.kind = kind;
     vertex.cell = cell;
     vertex.first_vertex = static_cast<std::uint32_t>(block_.inner_vertices.size());
     vertex.first_corner = static_cast<std::uint32_t>(block_.inner_corners.size());
-    for (const PrismCell::Local v : inner.points)
-      if (v < PrismCell::kShared)
+    for (const SolidCell::Local v : inner.points)
+      if (v < cell_.first_shared())
         block_.inner_vertices.push_back(vertex_on_[v]);
-      else if (v >= PrismCell::kCorners)
-        block_.inner_corners.push_back(points[v - std::size_t{PrismCell::kCorners}]);
+      else if (v >= cell_.first_corner())
+        block_.inner_corners.push_back(points[v - std::size_t{cell_.first_corner()}]);
     vertex.vertices_end = static_cast<std::uint32_t>(block_.inner_vertices.size());
     vertex.corners_end = static_cast<std::uint32_t>(block_.inner_corners.size());
     return vertex;
   }
 
-  const Polytopes& prisms_;
+  const Polytopes& polytopes_;
   std::span<const double> values_;
   const PolytopeRules& rules_;
   const ConedLoops& coned_;
   PolytopeBlock& block_;
-  PrismCell cell_;
+  SolidCell cell_;
   std::array<double, 2 * kPolytopeCorners> at_{};
-  std::array<std::uint32_t, PrismCell::kShared> vertex_on_{};  ///< by edge of the cell: position in crossed_
+  std::vector<std::uint32_t> vertex_on_;  ///< by edge of the cell: position in crossed_
   std::vector<std::array<Index, 2>> crossed_;
 };
 
 }  // namespace
 
-std::vector<PolytopeBlock> build_prism_contours(const Polytopes& prisms, std::span<const double> values,
+std::vector<PolytopeBlock> build_solid_contours(const Polytopes& polytopes, std::span<const double> values,
                                                 const PolytopeRules& rules, const std::vector<Index>* listed,
                                                 const WorkOptions& work) {
-  const ConedLoops coned = find_coned_loops(prisms, values, rules);
-  return build_blocks(512, prisms, listed, work,
-                      [&](PolytopeBlock& block) { return PrismBlockBuilder(prisms, values, rules, coned, block); });
+  const ConedLoops coned = find_coned_loops(polytopes, values, rules);
+  return build_blocks(512, polytopes, listed, work,
+                      [&](PolytopeBlock& block) { return SolidBlockBuilder(polytopes, values, rules, coned, block); });
 }
 
 }  // namespace tegl::detail
