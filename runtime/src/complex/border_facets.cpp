@@ -31,7 +31,7 @@ std::vector<Index> points_known_by(const Polytopes& polytopes, std::size_t cell,
   if (facet.is_tabled()) {
     for (const std::uint8_t v : facet.corners) points.push_back(polytopes.cell(cell)[v]);
   } else {
-    const auto key = key_of_facet(facet, polytopes.cell(cell), polytopes.entangled_base(cell));
+    const auto key = key_of_facet(facet, polytopes.cell(cell), polytopes.entangled_facet(cell, facet));
     points.assign(key.begin(), key.end());
   }
   return points;

@@ -288,6 +288,7 @@ class ListedCells {
 
   CellGroups take() {
     std::erase_if(groups_, [](const CellGroup& group) { return group.corners.empty(); });
+    if (dim_ == 4) polytopes_.find_entangled_facets();
     return {std::move(groups_), cells_.types.size(), std::move(polytopes_)};
   }
 

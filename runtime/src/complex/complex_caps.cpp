@@ -46,7 +46,7 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
         const SolidFacet facet = facet_of_solid(cells.polytopes.shape(cell), number);
         const bool flip = (facet.is_inverted != is_inverted) != descends;
         facet.is_tabled() ? add_tabled(facet, points.data(), flip)
-                          : add_solid(facet, points.data(), cells.polytopes.entangled_base(cell), flip);
+                          : add_solid(facet, points.data(), cells.polytopes.entangled_facet(cell, facet), flip);
         continue;
       }
       // seen from outside, rings are counterclockwise; edges of polygons have the polygon on their left

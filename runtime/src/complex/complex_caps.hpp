@@ -97,10 +97,10 @@ class ComplexCaps {
   /// Adds the high part of an edge or a face of a polytope.
   void add_face(const std::vector<Index>& points, bool flip);
   [[nodiscard]] std::vector<std::vector<CapVertex>> parts_around(const std::vector<Index>& points) const;
-  /// Adds the high part of a facet of a 4D polytope with these points at its corners. `entangled`:
-  /// Polytopes::entangled_base.
+  /// Adds the high part of a facet of a 4D polytope with these points at its corners. `name`:
+  /// Polytopes::entangled_facet.
   void add_tabled(const SolidFacet& facet, const Index* points, bool flip);
-  void add_solid(const SolidFacet& facet, const Index* points, std::optional<Index> entangled, bool flip);
+  void add_solid(const SolidFacet& facet, const Index* points, std::optional<Index> name, bool flip);
   void add_table(const Facet& facet, const tables::RegionTable& table);
   [[nodiscard]] Boundary boundary_of(const Facet& facet) const;
   /// Adds the contour's polygons in a facet. `next`: by vertex, the end of its segment, or the vertex itself.

@@ -35,8 +35,7 @@ void add_fan(std::vector<CapVertex> part, std::vector<CapTriangle>& triangles) {
 }  // namespace
 
 template <int N>
-void ComplexCaps<N>::add_solid(const SolidFacet& facet, const Index* points, std::optional<Index> entangled,
-                               bool flip) {
+void ComplexCaps<N>::add_solid(const SolidFacet& facet, const Index* points, std::optional<Index> name, bool flip) {
   if constexpr (N == 4) {
     std::vector<double> at;
     for (const std::uint8_t v : facet.corners) {
@@ -61,7 +60,7 @@ void ComplexCaps<N>::add_solid(const SolidFacet& facet, const Index* points, std
         numbers.push_back(static_cast<Index>(around.back().number()));
       }
       const std::size_t size = loop.size();
-      const Index centre = size > 3 ? numbers_.polygon_in(key_of_facet(facet, points, entangled), numbers) : kNoPoint;
+      const Index centre = size > 3 ? numbers_.polygon_in(key_of_facet(facet, points, name), numbers) : kNoPoint;
       const auto start = centre == kNoPoint ? fan_of_loop(rules, facet, loop, points) : std::nullopt;
       const CapVertex apex = start ? around[*start] : CapVertex::of_contour(centre);
       for (std::size_t i = start ? *start + 1 : 0, end = start ? i + size - 2 : size; i < end; ++i)

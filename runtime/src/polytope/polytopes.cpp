@@ -90,6 +90,49 @@ PolytopeShape Polytopes::shape_of_facets(const RecognisedPolytope& polytope) {
                                   std::make_shared<const PolytopeSolids>(std::move(solids)));
 }
 
+namespace {
+
+/// The corners of each face of a polyhedron, or of each facet of a 4D polytope that is no prism, as bits.
+std::vector<std::uint64_t> corners_of_facets(const PolytopeFaces& shape) {
+  std::vector<std::uint64_t> facets(shape.facet_count());
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    const auto add = [&](std::uint8_t v) { facets[f] |= std::uint64_t{1} << v; };
+    if (shape.solids() != nullptr)
+      for (const std::uint8_t v : facet_of_solid(shape, f).corners) add(v);
+    else
+      for (const std::uint8_t v : shape.ring(f)) add(v);
+  }
+  return facets;
+}
+
+std::vector<Index> ascending_points(const SolidFacet& facet, const Index* corners) {
+  std::vector<Index> points;
+  for (const std::uint8_t v : facet.corners) points.push_back(corners[v]);
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+}  // namespace
+
+void Polytopes::find_entangled_facets() {
+  entangled_ = find_entangled();
+  is_entangled_.assign(size(), false);
+  for (const Index c : entangled_) {
+    is_entangled_[c] = true;
+    for (const SolidFacet& facet : facets_of_solid(shape(c)))
+      if (!facet.is_tabled())
+        entangled_facets_.try_emplace(ascending_points(facet, cell(c)), static_cast<Index>(entangled_facets_.size()));
+  }
+}
+
+std::optional<Index> Polytopes::entangled_facet(std::size_t cell, const SolidFacet& facet) const {
+  if (facet.kind == SolidFacet::Kind::end)
+    return is_entangled(cell) ? std::optional(static_cast<Index>(cell % base_count())) : std::nullopt;
+  if (entangled_facets_.empty()) return std::nullopt;
+  const auto found = entangled_facets_.find(ascending_points(facet, this->cell(cell)));
+  return found == entangled_facets_.end() ? std::nullopt : std::optional(found->second);
+}
+
 std::vector<Index> Polytopes::find_entangled() const {
   // cells at each point
   Index points = 0;
@@ -110,9 +153,7 @@ std::vector<Index> Polytopes::find_entangled() const {
       for (std::uint64_t i = first[corners[v]]; i < first[corners[v] + 1]; ++i)
         if (cells_at[i] != c) common.emplace_back(cells_at[i], std::uint64_t{1} << v);
     std::sort(common.begin(), common.end());
-    std::vector<std::uint64_t> faces(shape(c).face_count());
-    for (std::size_t f = 0; f < faces.size(); ++f)
-      for (const std::uint8_t v : shape(c).ring(f)) faces[f] |= std::uint64_t{1} << v;
+    const std::vector<std::uint64_t> faces = corners_of_facets(shape(c));
     for (std::size_t i = 0; i < common.size();) {
       std::uint64_t of_both = 0;
       const Index other = common[i].first;
@@ -163,6 +204,14 @@ Polytopes Polytopes::in_time(std::size_t points, std::size_t intervals) const {
 
 void Polytopes::renumber(std::span<const Index> number) {
   for (Index& corner : corners_) corner = number[corner];
+  std::map<std::vector<Index>, Index> facets;
+  for (const auto& [points, name] : entangled_facets_) {
+    std::vector<Index> renumbered;
+    for (const Index p : points) renumbered.push_back(number[p]);
+    std::sort(renumbered.begin(), renumbered.end());
+    facets.try_emplace(std::move(renumbered), name);
+  }
+  entangled_facets_ = std::move(facets);
 }
 
 namespace {

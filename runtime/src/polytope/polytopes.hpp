@@ -20,6 +20,7 @@
 namespace tegl::detail {
 
 struct RecognisedPolytope;
+struct SolidFacet;
 
 /// The polygons (of a 2D complex), polyhedra (3D), or 4D polytopes of a complex, in the order of the input. The latter
 /// are either all prisms over polyhedra, made by in_time, or none is known to be one.
@@ -41,23 +42,24 @@ class Polytopes {
   void add_polygon(std::span<const Index> corners);
   /// Appends a polyhedron with the rings of its faces, checked, in the numbers of its corners.
   void add_polyhedron(std::span<const Index> corners, std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends);
-  /// Appends a 4D polytope.
+  /// Appends a 4D polytope. After the last one, `find_entangled_facets` is to be called.
   void add_polytope(RecognisedPolytope polytope);
+  /// Finds the 4D polytopes that are entangled, and names their facets.
+  void find_entangled_facets();
   /// The prisms over the polygons or polyhedra in the intervals between layers of `points` points each.
   [[nodiscard]] Polytopes in_time(std::size_t points, std::size_t intervals) const;
-  /// Of prisms over polyhedra: number of polyhedra; otherwise 0. Prism c + k * base_count() is over polyhedron c in
-  /// interval k.
+  /// Of prisms over polyhedra: number of polyhedra. Prism c + k * base_count() is over polyhedron c in interval k. Of
+  /// other 4D polytopes: their number.
   [[nodiscard]] std::size_t base_count() const noexcept { return is_entangled_.size(); }
-  /// The polyhedra, ascending, that have corners in common with another one which are not all in one face: both cells
-  /// may have the same diagonals between edges.
+  /// The polyhedra under prisms or, of other 4D polytopes, the cells, ascending, that have corners in common with
+  /// another one which are not all in one face, or facet: both cells may have the same diagonals between edges.
   [[nodiscard]] const std::vector<Index>& entangled() const noexcept { return entangled_; }
-  [[nodiscard]] bool is_entangled(std::size_t prism) const noexcept {
-    return base_count() > 0 && is_entangled_[prism % base_count()];
+  [[nodiscard]] bool is_entangled(std::size_t cell) const noexcept {
+    return base_count() > 0 && is_entangled_[cell % base_count()];
   }
-  /// The polyhedron under a prism if it is entangled.
-  [[nodiscard]] std::optional<Index> entangled_base(std::size_t prism) const noexcept {
-    return is_entangled(prism) ? std::optional(static_cast<Index>(prism % base_count())) : std::nullopt;
-  }
+  /// The name of a facet without a table if it is an end of a prism over an entangled polyhedron, which is that, or a
+  /// facet of another entangled polytope. Cells with the facet agree.
+  [[nodiscard]] std::optional<Index> entangled_facet(std::size_t cell, const SolidFacet& facet) const;
   /// Replaces each point p by number[p].
   void renumber(std::span<const Index> number);
 
@@ -85,8 +87,9 @@ class Polytopes {
   std::vector<std::uint32_t> shape_of_;       ///< by cell
   std::vector<std::uint64_t> first_;          ///< by cell: its first corner in corners_
   std::vector<Index> corners_;
-  std::vector<Index> entangled_;  ///< of prisms over polyhedra
+  std::vector<Index> entangled_;  ///< of 4D polytopes
   std::vector<bool> is_entangled_;
+  std::map<std::vector<Index>, Index> entangled_facets_;  ///< of polytopes that are no prisms: by ascending points
 };
 
 /// Whether each polytope is oriented against its rings: by the sign of its volume or area. Flat ones are as the others

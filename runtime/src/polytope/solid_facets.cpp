@@ -104,14 +104,13 @@ std::vector<SolidFacet> facets_of_solid(const PolytopeFaces& shape) {
   return facets;
 }
 
-std::array<Index, 4> key_of_facet(const SolidFacet& facet, const Index* points, std::optional<Index> entangled) {
+std::array<Index, 4> key_of_facet(const SolidFacet& facet, const Index* points, std::optional<Index> name) {
   const auto point = [&](std::uint8_t corner) { return points[facet.corners[corner]]; };
   std::vector<std::uint8_t> corners(facet.corners.size());
   for (std::size_t v = 0; v < corners.size(); ++v) corners[v] = static_cast<std::uint8_t>(v);
   std::sort(corners.begin(), corners.end(), [&](std::uint8_t a, std::uint8_t b) { return point(a) < point(b); });
-  constexpr Index kNone = ~Index{0};  // no point; nor are the numbers below it, by which polyhedra are counted
-  if (entangled && facet.kind == SolidFacet::Kind::end)
-    return {point(corners[0]), kNone - 1 - *entangled, kNone, kNone};
+  constexpr Index kNone = ~Index{0};  // no point; nor are the numbers below it, by which entangled facets are counted
+  if (name) return {point(corners[0]), kNone - 1 - *name, kNone, kNone};
   // three corners are in one polygon at most
   std::size_t fourth = 3;
   for (std::size_t f = 0; f < facet.shape.face_count(); ++f) {

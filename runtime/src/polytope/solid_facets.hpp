@@ -63,10 +63,10 @@ struct PolytopeSolids {
 inline constexpr std::array<std::uint8_t, 8> kHexahedronCorners = {0, 1, 3, 2, 4, 5, 7, 6};
 
 /// Four ascending numbers of a facet that is not tabled, which no other facet of a complex has, whatever the numbering
-/// of the cell: its smallest points that are not in one polygon, three of them the smallest of all. Several polyhedra
-/// may have four such points in common if they are entangled; their ends have the smallest point and the polyhedron.
-/// `points`: at the cell's corners; `entangled`: of Polytopes.
+/// of the cell: its smallest points that are not in one polygon, three of them the smallest of all. Several facets may
+/// have four such points in common if their cells are entangled; these have the smallest point and their name.
+/// `points`: at the cell's corners; `name`: Polytopes::entangled_facet.
 [[nodiscard]] std::array<Index, 4> key_of_facet(const SolidFacet& facet, const Index* points,
-                                                std::optional<Index> entangled);
+                                                std::optional<Index> name);
 
 }  // namespace tegl::detail

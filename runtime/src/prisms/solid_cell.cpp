@@ -56,12 +56,11 @@ void SolidCell::load(const PolytopeFaces& shape) {
     for (const std::uint16_t e : facets_[f].edges) is_in_facet_[f * shape.edges().size() + e] = true;
 }
 
-void SolidCell::build(const PolytopeFaces& shape, const Index* points, const double* values,
-                      const EntangledPrism& entangled) {
+void SolidCell::build(const PolytopeFaces& shape, const Index* points, const double* values, EntangledSolid entangled) {
   if (&shape != shape_) load(shape);
   points_ = points;
   values_ = values;
-  entangled_ = entangled;
+  entangled_ = std::move(entangled);
   sigma_.clear();
   tetrahedra_.clear();
   for (auto* const inner : {&shared_, &cones_, &sides_, &collars_}) inner->clear();
@@ -141,8 +140,7 @@ void SolidCell::add_loop(std::size_t f, std::span<const std::uint8_t> loop) {
   const SolidFacet& facet = facets_[f];
   const std::size_t size = loop.size();
   const auto vertex = [&](std::size_t i) { return Local{facet.edges[loop[i % size]]}; };
-  const bool is_coned = facet.kind == SolidFacet::Kind::end &&
-                        std::binary_search(entangled_.coned[f].begin(), entangled_.coned[f].end(), loop[0]);
+  const bool is_coned = entangled_.is_coned && entangled_.is_coned(facet, loop);
   if (const auto start = fan_of_loop(rules_, facet, loop, points_); start && !is_coned) {
     for (std::size_t i = 1; i + 1 < size; ++i)
       sigma_.push_back({{vertex(*start), vertex(*start + i), vertex(*start + i + 1)}, f});

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -29,11 +30,11 @@ namespace tegl::detail {
 [[nodiscard]] std::optional<std::size_t> fan_of_loop(const PolytopeRules& rules, const SolidFacet& facet,
                                                      std::span<const std::uint8_t> loop, const Index* points);
 
-/// What is special about a prism over a polyhedron of Polytopes::entangled.
-struct EntangledPrism {
+/// What is special about a cell of Polytopes::entangled, or beside one.
+struct EntangledSolid {
   bool is_one = false;  ///< spheres are coned from their barycentres: a diagonal may be in the other cell as well
-  /// By end: the first edges, ascending, of loops there that are coned in any case.
-  std::array<std::span<const std::uint8_t>, 2> coned{};
+  /// Whether a loop in a facet is coned in any case; null: none is. `loop`: edges of the facet.
+  std::function<bool(const SolidFacet& facet, std::span<const std::uint8_t> loop)> is_coned = nullptr;
 };
 
 /// Builds the contours of 4D polytopes, one after the other. In each facet they are the contour of the 3D cell there,
@@ -61,8 +62,7 @@ class SolidCell {
   explicit SolidCell(const PolytopeRules& rules);
 
   /// Builds the contour of an active cell with these points and values at its corners.
-  void build(const PolytopeFaces& shape, const Index* points, const double* values,
-             const EntangledPrism& entangled = {});
+  void build(const PolytopeFaces& shape, const Index* points, const double* values, EntangledSolid entangled = {});
 
   /// With their positive sides towards high corners if the cell is not inverted.
   [[nodiscard]] const std::vector<Tetrahedron>& tetrahedra() const noexcept { return tetrahedra_; }
@@ -146,7 +146,7 @@ class SolidCell {
   Local first_cone_ = 0, first_corner_ = 0;
   const Index* points_ = nullptr;
   const double* values_ = nullptr;
-  EntangledPrism entangled_;
+  EntangledSolid entangled_;
   Component sigma_;
   std::vector<Tetrahedron> tetrahedra_, regions_;
   std::vector<Inner> shared_, cones_, sides_, collars_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "base/workers.hpp"
@@ -15,9 +16,66 @@ namespace tegl::detail {
 
 namespace {
 
-/// The loops that are coned though they have a fan, as in the contour of the polyhedra at one time: one of its
-/// diagonals is in another cell as well (separate_diagonals). By polyhedron and layer.
-using ConedLoops = std::map<std::pair<Index, Index>, std::vector<std::uint8_t>>;
+/// The loops that are coned though they have a fan: one of its diagonals is in another cell as well, as in the contour
+/// of the polyhedra at one time (separate_diagonals).
+struct ConedLoops {
+  std::map<std::pair<Index, Index>, std::vector<std::uint8_t>> at_ends;  ///< of prisms: by polyhedron and layer
+  /// In facets of other polytopes: by key_of_facet and the smallest ends of an edge.
+  std::set<std::array<Index, 6>> in_facets;
+};
+
+/// The key of a loop in a facet of a polytope that is no prism.
+std::array<Index, 6> key_of_loop(const Polytopes& polytopes, Index cell, const SolidFacet& facet,
+                                 std::span<const std::uint8_t> loop) {
+  const Index* const points = polytopes.cell(cell);
+  std::array<Index, 2> smallest = {~Index{0}, ~Index{0}};
+  for (const std::uint8_t e : loop) {
+    const auto& [a, b] = facet.shape.edges()[e];
+    const auto [p, q] = std::minmax(points[facet.corners[a]], points[facet.corners[b]]);
+    smallest = std::min(smallest, std::array<Index, 2>{p, q});
+  }
+  const auto key = key_of_facet(facet, points, polytopes.entangled_facet(cell, facet));
+  return {key[0], key[1], key[2], key[3], smallest[0], smallest[1]};
+}
+
+/// The loops in facets without a table, of polytopes that are no prisms, with a diagonal that another facet has, too.
+std::set<std::array<Index, 6>> coned_in_facets(const Polytopes& polytopes, std::span<const double> values,
+                                               const PolytopeRules& rules) {
+  std::vector<std::pair<std::array<Index, 4>, std::array<Index, 6>>> diagonals;  // ends of both edges, and the loop
+  Loops loops;
+  std::array<double, kPolytopeCorners> at;
+  for (const Index c : polytopes.entangled()) {
+    const Index* const points = polytopes.cell(c);
+    for (const SolidFacet& facet : facets_of_solid(polytopes.shape(c))) {
+      bool is_missing = facet.is_tabled();
+      for (std::size_t v = 0; v < facet.corners.size(); ++v) {
+        at[v] = values[points[facet.corners[v]]];
+        is_missing = is_missing || std::isnan(at[v]);
+      }
+      if (is_missing) continue;
+      loops.for_each(facet.shape, at.data(), rules, [&](std::span<const std::uint8_t> loop) {
+        const auto start = fan_of_loop(rules, facet, loop, points);
+        if (loop.size() < 4 || !start) return;
+        const auto ends = [&](std::size_t i) -> std::array<Index, 2> {
+          const auto& [a, b] = facet.shape.edges()[loop[(*start + i) % loop.size()]];
+          const auto [p, q] = std::minmax(points[facet.corners[a]], points[facet.corners[b]]);
+          return {p, q};
+        };
+        const auto key = key_of_loop(polytopes, c, facet, loop);
+        for (std::size_t i = 2; i + 1 < loop.size(); ++i) {
+          const auto first = std::min(ends(0), ends(i)), second = std::max(ends(0), ends(i));
+          diagonals.push_back({{first[0], first[1], second[0], second[1]}, key});
+        }
+      });
+    }
+  }
+  std::sort(diagonals.begin(), diagonals.end());
+  diagonals.erase(std::unique(diagonals.begin(), diagonals.end()), diagonals.end());  // the cells at a facet
+  std::set<std::array<Index, 6>> coned;
+  for (std::size_t i = 1; i < diagonals.size(); ++i)
+    if (diagonals[i].first == diagonals[i - 1].first) coned.insert({diagonals[i - 1].second, diagonals[i].second});
+  return coned;
+}
 
 ConedLoops find_coned_loops(const Polytopes& prisms, std::span<const double> values, const PolytopeRules& rules) {
   struct Diagonal {
@@ -26,8 +84,13 @@ ConedLoops find_coned_loops(const Polytopes& prisms, std::span<const double> val
     std::uint8_t loop;
     auto operator<=>(const Diagonal&) const = default;
   };
-  ConedLoops coned;
-  if (!rules.is_compact || prisms.entangled().empty()) return coned;
+  ConedLoops result;
+  if (!rules.is_compact || prisms.entangled().empty()) return result;
+  if (prisms.shape(0).solids() != nullptr) {
+    result.in_facets = coned_in_facets(prisms, values, rules);
+    return result;
+  }
+  auto& coned = result.at_ends;
   std::vector<Diagonal> diagonals;
   Loops loops;
   std::array<double, kPolytopeCorners> at;
@@ -59,7 +122,7 @@ ConedLoops find_coned_loops(const Polytopes& prisms, std::span<const double> val
     if (diagonals[i].ends == diagonals[i - 1].ends)
       for (const Diagonal& diagonal : {diagonals[i - 1], diagonals[i]}) coned[diagonal.at].push_back(diagonal.loop);
   for (auto& [at_end, of] : coned) std::sort(of.begin(), of.end());
-  return coned;
+  return result;
 }
 
 /// Builds the contours of the cells of a block.
@@ -102,14 +165,21 @@ class SolidBlockBuilder {
  private:
   using Kind = PolytopeBlock::InnerVertex::Kind;
 
-  [[nodiscard]] EntangledPrism entangled(Index cell) const {
-    EntangledPrism result;
+  [[nodiscard]] EntangledSolid entangled(Index cell) const {
+    EntangledSolid result;
     result.is_one = polytopes_.is_entangled(cell);
-    if (!result.is_one) return result;
-    const auto c = static_cast<Index>(cell % polytopes_.base_count()),
-               k = static_cast<Index>(cell / polytopes_.base_count());
-    for (const Index end : {0u, 1u})
-      if (const auto found = coned_.find({c, k + end}); found != coned_.end()) result.coned[end] = found->second;
+    if (!coned_.in_facets.empty())
+      result.is_coned = [this, cell](const SolidFacet& facet, std::span<const std::uint8_t> loop) {
+        return !facet.is_tabled() && coned_.in_facets.count(key_of_loop(polytopes_, cell, facet, loop)) != 0;
+      };
+    if (result.is_one && !coned_.at_ends.empty())
+      result.is_coned = [this, cell](const SolidFacet& facet, std::span<const std::uint8_t> loop) {
+        if (facet.kind != SolidFacet::Kind::end) return false;
+        const auto base = static_cast<Index>(polytopes_.base_count());
+        const Index layer = cell / base + (facet.corners[0] == 0 ? 0 : 1);
+        const auto found = coned_.at_ends.find({cell % base, layer});
+        return found != coned_.at_ends.end() && std::binary_search(found->second.begin(), found->second.end(), loop[0]);
+      };
     return result;
   }
 
@@ -147,7 +217,7 @@ class SolidBlockBuilder {
     if (kind == Kind::in_cube) {
       for (std::size_t v = 0; v < 8; ++v) vertex.points[v] = points[facet.corners[kHexahedronCorners[v]]];
     } else if (kind == Kind::loop) {
-      const std::array<Index, 4> key = key_of_facet(facet, points.data(), polytopes_.entangled_base(cell));
+      const std::array<Index, 4> key = key_of_facet(facet, points.data(), polytopes_.entangled_facet(cell, facet));
       std::copy(key.begin(), key.end(), vertex.points.begin());
     }
   }
