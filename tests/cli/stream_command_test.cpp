@@ -75,11 +75,13 @@ TEST_F(Stream, SmallContoursMakeSmallFiles) {
               std::filesystem::file_size(path("whole.vtkhdf")) + 4096);
   }
   // no contour at all
-  EXPECT_EQ(
-      run_tegl({"contour", path("ball.nrrd"), "--iso", "9", "--allow-empty", "--stream", "-o", path("none.vtkhdf")})
-          .exit,
-      0);
-  EXPECT_LT(std::filesystem::file_size(path("none.vtkhdf")), 16384U);
+  std::vector<std::string> none = {"contour", path("ball.nrrd"),  "--iso", "9", "--allow-empty",
+                                   "-o",      path("none.vtkhdf")};
+  EXPECT_EQ(run_tegl(none).exit, 0);
+  const auto size = std::filesystem::file_size(path("none.vtkhdf"));
+  none.emplace_back("--stream");
+  EXPECT_EQ(run_tegl(none).exit, 0);
+  EXPECT_LE(std::filesystem::file_size(path("none.vtkhdf")), size + 4096);
   EXPECT_TRUE(read_mesh(path("none.vtkhdf")).simplices.empty());
 }
 

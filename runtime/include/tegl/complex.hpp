@@ -66,9 +66,9 @@ using CellSigns = std::vector<std::vector<std::uint64_t>>;
 /// Cells of several types, polygons, polyhedra and 4D polytopes among them. `ends` and the like ascend; the last is the
 /// size of the list that they refer to.
 ///
-/// A polyhedron is given by its faces, each with its corners around it in either direction. Its faces must be as those
-/// of a convex polyhedron: a closed sphere, and two faces have nothing, a corner or an edge in common. They need not be
-/// plane. A polyhedron whose faces are those of a tetrahedron, a pyramid, a wedge, a hexahedron or an octahedron is
+/// A polyhedron is given by its faces, each with its corners around it in either direction. Its faces must form a
+/// closed sphere, and two faces must have nothing, a corner or an edge in common, as in a convex polyhedron. They need
+/// not be plane. A polyhedron with the faces of a tetrahedron, a pyramid, a wedge, a hexahedron or an octahedron is
 /// such a cell, and a polygon of three or four corners a triangle or a quadrilateral.
 ///
 /// A 4D polytope is given by its facets, and a facet as a polyhedron is, by its faces. The faces of a polytope are

@@ -119,10 +119,9 @@ requires DimensionBetween<N, 2, 4>
 /// side of ExtractOptions::direction in space. The image's grid gives the sizes, the coordinates of axes that are not
 /// curved, and names and units.
 ///
-/// `seams`: periodic axes. The contour continues across them as that of `extract_periodic` on the indices. If the
-/// places of a seam's first samples are the same behind its last ones, the contour is closed there in space; otherwise
-/// it is wrapped (Contour::periods), so that `unroll` makes it one for pictures. Cells must be shorter than half a
-/// period.
+/// `seams`: periodic axes. The contour continues across them, as by `extract_periodic` on the indices. If the places of
+/// a seam's first samples are the same behind its last ones, the contour is closed there in space; otherwise it is
+/// wrapped (Contour::periods), so that `unroll` makes it one for pictures. Cells must be shorter than half a period.
 ///
 /// A contour on a grid without folds (`find_folds`) is embedded if the cells of the grid are; with folds, parts
 /// overlap.

@@ -37,11 +37,11 @@ struct Deviation {
 ///
 /// Method. A simplex that is not much larger than the largest distance is bounded in up to 48 parts (4D: 128): each by
 /// the distances of its corners from one simplex of `to`, because this distance is convex, by balls around its corners,
-/// or by one around the middle of its longest edge. Above each other simplex of `from`, along its normal,
-/// the simplices of `to` are grouped by height. A group without a border there that covers one point of the simplex
-/// covers all of it (by topology, without comparing sizes), so the group's height bounds the distance. If there is no
-/// such group, for instance next to borders, the distances of the corners bound those of all points between. A simplex
-/// with a loose bound is halved, up to 24 times; those with the largest bounds up to 400 times.
+/// or by one around the middle of its longest edge. Above each other simplex of `from`, along its normal, the simplices
+/// of `to` are grouped by height. A group without a border there that covers one point of the simplex covers all of it
+/// (by topology, without comparing sizes), so the group's height bounds the distance. If there is no such group, for
+/// instance next to borders, the distances of the corners bound the distances of all points between. A simplex with a
+/// loose bound is halved, up to 24 times; those with the largest bounds up to 400 times.
 ///
 /// So the bound holds up to the rounding of coordinates, with any gaps, folds or flat simplices; 1e-11 of an edge is
 /// added to most. The bound of a simplex is at most 1.25 times the distance of one of its points, or `least` (with

@@ -175,7 +175,7 @@ requires DimensionBetween<N, 2, 4>
 ///
 /// Errors: those of `extract`; InvalidArgument for `close`; TooLarge also for 2^32 incidences. O(C + P + S log S) time
 /// for S facets; what is not `extract` runs on one thread. The result is the same for any number of threads. Memory
-/// besides the result: that of `extract`, the compact contour, and 12 bytes for each side of a polygon.
+/// besides the result: as `extract`, the compact contour, and 12 bytes for each side of a polygon.
 template <Coordinate Real = float, int N>
 requires DimensionBetween<N, 2, 3>
 [[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,

@@ -33,8 +33,8 @@ using AxisWeights = std::vector<double>;
 /// samples, 0 or more; 0 gives a single 1. Errors: InvalidArgument.
 [[nodiscard]] AxisWeights gaussian_weights(double sigma, double truncate = 4.0);
 /// Weights e^(-t) I_k(t) of the discrete Gaussian of variance t = sigma^2 (T. Lindeberg, Scale-space for discrete
-/// signals, 1990), up to a remainder of 1e-7; their sum is 1. The convolution of two such kernels is that of the sum of
-/// their variances. `sigma` in samples, 0 or more. Errors: InvalidArgument.
+/// signals, 1990), up to a remainder of 1e-7; their sum is 1. Two such kernels in turn equal one whose variance is the
+/// sum of their variances. `sigma` in samples, 0 or more. Errors: InvalidArgument.
 [[nodiscard]] AxisWeights discrete_gaussian_weights(double sigma);
 /// Binomial coefficients with an even order divided by their sum, as 1/4, 1/2, 1/4: the order is the even number
 /// closest to 4 sigma^2, so the standard deviation is sqrt(order) / 2. `sigma` in samples, 0 to 100. Errors:

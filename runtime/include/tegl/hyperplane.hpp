@@ -60,16 +60,16 @@ struct HyperplaneFrame {
   }
 };
 
-/// The frame of a hyperplane. Lengths and angles are those of the coordinates as given. If axes have different units
+/// The frame of a hyperplane. Lengths and angles are measured in the coordinates as given. If axes have different units
 /// (mm and s), call `scale_axes` first to define how they compare. N = 2 to 5. Throws InvalidArgument if the normal is
 /// 0 or not finite, or the offset is not finite.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] HyperplaneFrame<N> frame_of(const Hyperplane<N>& hyperplane);
 
-/// The contour with the coordinates along each axis multiplied by a positive factor. Normals become those of the scaled
-/// contour; names, units, attributes and simplices are unchanged. Pass the contour by std::move to scale it without a
-/// copy. N = 2 to 5. Throws InvalidArgument for other factors. O(#V).
+/// The contour with the coordinates along each axis multiplied by a positive factor. Normals are transformed to normals
+/// of the scaled contour; names, units, attributes and simplices are unchanged. Pass the contour by std::move to scale
+/// it without a copy. N = 2 to 5. Throws InvalidArgument for other factors. O(#V).
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Contour<N, Real> scale_axes(Contour<N, Real> contour, const std::type_identity_t<Vector<N>>& factors);

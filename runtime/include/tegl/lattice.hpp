@@ -46,7 +46,7 @@ requires DimensionBetween<N, 2, 4>
 /// Extracts the contour of an image on a lattice. Cells that would need samples outside of the image are left out, so
 /// its sides are uneven; at the first and last layer, octahedra are cut to pyramids. In 2D and 3D without missing
 /// values, caps and periods, rows of samples are classified 64 at a time, and the cells are not stored; otherwise the
-/// contour is that of `lattice_complex`. Both have the same vertices and simplices, in another order.
+/// cells of `lattice_complex` are contoured. Both ways give the same vertices and simplices, in another order.
 ///
 /// ExtractOptions::close closes the contour at the uneven sides; caps are the high part of the border of
 /// `lattice_complex`.

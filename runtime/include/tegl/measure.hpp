@@ -42,8 +42,8 @@ struct Measures {
 /// faces are found with fixed random numbers: each is overlooked with a probability below 1e-16 (docs/measures.md).
 /// Errors: InvalidArgument (a vertex number out of range, a coordinate that is not finite); Cancelled. O(#S + b log b)
 /// time for b faces between vertices of open faces; memory of 8 N - 11 bytes per vertex, 8 more per vertex and thread
-/// (of at most 8), and that of the b faces. If most vertices are on open faces: O(#S log s) for s simplices around a
-/// vertex, and 4 N + 4 bytes per simplex. Thread-safe.
+/// (of at most 8), and the b faces. If most vertices are on open faces: O(#S log s) for s simplices around a vertex,
+/// and 4 N + 4 bytes per simplex. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work = {});

@@ -35,7 +35,7 @@ struct ProjectedContour {
 /// Projects all simplices of a 4D contour (M. Liversage, thesis, 1994, 10.2.5, but to space instead of the screen).
 ///
 /// The height <d, x> / |d| of each vertex along the direction d becomes a vertex attribute, for colours; along t it is
-/// the time. Its name is that of the axis along d, or "height" for an oblique direction ("t" for an axis without a
+/// the time. It has the name of the axis along d, or "height" for an oblique direction ("t" for an axis without a
 /// name). The simplex attribute "side" is -1 if the line of sight enters the contour's high part through the
 /// tetrahedron, and 1 if it leaves it or is tangent: along t, -1 means arriving and 1 leaving. Attributes of the
 /// contour with these names are replaced. Throws InvalidArgument if the direction is 0 or not finite, the distance is

@@ -16,11 +16,12 @@
 
 namespace tegl {
 
-/// Cuts of an N-dimensional contour (N = 3, 4, 5) by parallel hyperplanes; by default those of constant time.
+/// Cuts of an N-dimensional contour (N = 3, 4, 5) by parallel hyperplanes; by default at constant time.
 ///
-/// Each cut equals that of `slice` bit by bit, in time that depends on the size of the cut and not of the contour: an
-/// interval tree holds the height range of every simplex. Building takes O(s log s) time for s simplices. Memory: 16
-/// bytes per simplex and up to 12 for each node of the tree (usually far fewer nodes than simplices; see `memory`).
+/// Each cut equals the result of `slice` bit by bit, in time that depends on the size of the cut and not of the
+/// contour: an interval tree holds the height range of every simplex. Building takes O(s log s) time for s simplices.
+/// Memory: 16 bytes per simplex and up to 12 for each node of the tree (usually far fewer nodes than simplices; see
+/// `memory`).
 ///
 /// The contour is not copied: it must outlive the scrubber, unchanged. Thread-safe: several threads may cut at the same
 /// time.

@@ -88,12 +88,12 @@ requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_streamed_s
 /// others (in 4D also some simplices of zero size there).
 ///
 /// The reader and the sinks are called by the calling thread. Layers are read once, in ascending order; if the last
-/// axis is periodic, the last four are requested first, and stay in memory with the first six. 2D and 3D:
-/// parts of 16 layers or more are contoured together with up to ten layers around them, so the time is up to 1.6 times
-/// that of the whole image in memory (3 times with normals), and memory holds these layers and their contour. In 4D,
-/// with ambiguity from the data on fcc, with caps, with periods, and from the first missing value on, the cells of
-/// parts of 2 layers or more are stored, and memory holds them and up to ten layers more, with ExtractOptions::close
-/// also the cells of up to six layers around them, and with missing values the simplices beside them. Errors: those of
+/// axis is periodic, the last four are requested first, and stay in memory with the first six. 2D and 3D: parts of 16
+/// layers or more are contoured together with up to ten layers around them, so this takes up to 1.6 times as long as
+/// the whole image in memory (3 times with normals), and memory holds these layers and their contour. In 4D, with
+/// ambiguity from the data on fcc, with caps, with periods, and from the first missing value on, the cells of parts of
+/// 2 layers or more are stored, and memory holds them and up to ten layers more, with ExtractOptions::close also the
+/// cells of up to six layers around them, and with missing values the simplices beside them. Errors: those of
 /// `extract_lattice` except TooLarge of the whole image, and of the reader and the sinks; InvalidArgument for a null
 /// sink.
 template <Coordinate Real = float, Value T, int N>
