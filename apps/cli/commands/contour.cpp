@@ -182,7 +182,7 @@ class ContourCommand final : public Command {
   void for_plain_cells(const Refuse& refuse) const {
     if (is_streamed()) refuse(stream_ ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
     if (!index_.empty()) refuse("--index");
-    if (facets_) refuse("--facets");
+    if (facets_) refuse(kFacets);
     if (app().count("--pick") > 0) refuse("--pick");
     if (one_file_) refuse("--one-file");
     if (options_.polygon_triangulation()) refuse("a triangulation of polygons");
@@ -192,8 +192,9 @@ class ContourCommand final : public Command {
   void refuse_tiling_of_file(const ImageInfo& info) const {
     for_plain_cells([&](const char* with) {
       options_.refuse_cells(info.samples_are_cells, file(), with);
-      if (!is_streamed()) options_.refuse_lattice(info, file(), with);
+      if (!is_streamed() && with != std::string_view(kFacets)) options_.refuse_lattice(info, file(), with);
     });
+    if (facets_ && options_.has_lattice(info)) options_.refuse_periodic_with(kFacetsOnLattice);
     if (attributes_.wanted()) options_.refuse_cells(info.samples_are_cells, file(), "--attribute");
     if (!positions_.are_linear()) options_.refuse_lattice(info, file(), "--positions");
   }
@@ -206,6 +207,8 @@ class ContourCommand final : public Command {
                   fmt::format("--unroll with {}; expected one of the two", facets_ ? "--facets" : "--stream"));
     for_plain_cells([&](const char* with) {
       if (is_streamed() && options_.tiling().lattice) return;
+      if (with == std::string_view(kFacets) && options_.tiling().lattice)
+        return options_.refuse_periodic_with(kFacetsOnLattice);
       is_streamed() || facets_ ? options_.refuse_other_tiling(with) : options_.refuse_tiling(with);
     });
     if (attributes_.wanted() && options_.tiling().of_cells) options_.refuse_tiling("--attribute");
@@ -269,7 +272,7 @@ class ContourCommand final : public Command {
       };
       const bool single_precision = options_.single_precision();
       result.mesh = positions_.are_linear() ? extract_and_use<Mesh>(input.image, result.isovalue_of_samples, options,
-                                                                    single_precision, finished)
+                                                                    single_precision, finished, options_.tiling())
                                             : extract_placed_and_use<Mesh>(input.image, result.isovalue_of_samples,
                                                                            placed, options, single_precision, finished);
       result.seconds.add(*result.stats);
@@ -623,14 +626,15 @@ class ContourCommand final : public Command {
       require_contour(input, result.isovalue, options_.allows_empty());
     }
     Tiling tiling = options_.tiling();
-    remark(take_longitudes(input.image, options_, tiling));
+    options_.take_lattice(input.info, file(), tiling);
+    if (!tiling.lattice) remark(take_longitudes(input.image, options_, tiling));
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (FacetsResult& result : results)
-      write_image_facets(
-          input.image,
-          {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression(), tiling.periodic},
-          bar, result, written);
+      write_image_facets(input.image,
+                         {result.isovalue, options, options_.single_precision(), no_check_, compress_.compression(),
+                          tiling.periodic, options_.allows_empty(), tiling.lattice},
+                         bar, result, written);
     written.keep();
     bar.clear();
     for (const FacetsResult& result : results)
