@@ -80,8 +80,9 @@ TEST_F(FacetsCommand, WritesThePolyhedraInCellsIn4D) {
   const std::string points = write("points.csv", "x,y,z,t,c\n0,0,0,0,1\n1,0,0,0,0\n0,1,0,0,0\n0,0,1,0,0\n0,0,0,1,1\n");
   const nlohmann::json prism = contour({points, "--iso", "0.5", "--facets", "-o", path("o.vtu")});
   EXPECT_EQ(prism["facets"], (nlohmann::json{{"points", 6}, {"segments", 9}, {"polygons", 5}, {"polyhedra", 1}}));
-  expect_failure(2, {points, "--iso", "0.5", "--facets", "--close", "-o", path("p.vtu")},
-                 {"--facets with --close of a 3D mesh over time or of points in 4D; expected one of the two"});
+  const nlohmann::json closed = contour({points, "--iso", "0.5", "--facets", "--close", "-o", path("o.vtu")});
+  EXPECT_EQ(closed["facets"], (nlohmann::json{{"points", 8}, {"segments", 16}, {"polygons", 14}, {"polyhedra", 6}}));
+  EXPECT_EQ(closed["boundary_facets"], 0);
   expect_failure(6, {points, "--iso", "0.5", "--facets", "-o", path("p.vtkhdf")}, {"cannot hold the polyhedra"});
   const std::string tetrahedron =
       R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1">

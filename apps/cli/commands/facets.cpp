@@ -99,12 +99,6 @@ void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& wo
   result.seconds.write = watch.lap();
 }
 
-/// Throws InvalidArgument for closed facets of 4D cells. `cells`: for the message.
-void refuse_close_in_4d(const FacetsWork& work, int dim, const char* cells) {
-  if (dim == 4 && work.options.close)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("--facets with --close of {}; expected one of the two", cells));
-}
-
 /// Extracts the facets of a complex, sets their axes with set_axes(facets), and writes them.
 template <int N, class SetAxes>
 void write_facets_of(const Complex<N>& complex, const SetAxes& set_axes, const FacetsWork& work, ProgressBar& bar,
@@ -223,7 +217,6 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
     result.stats = stats_of(facets, tiles, result.seconds.generate);
     check_and_write(facets, work, bar, result, written);
   };
-  if (work.lattice) refuse_close_in_4d(work, image_dim(image), "a 4D lattice");
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
     if (!work.lattice) return use_facets<void>(owned, work, options, finish);
     const auto set_axes = [&](auto& facets) {
@@ -252,7 +245,6 @@ std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputF
     result.isovalue = work.isovalue = isovalues[i].value;
     result.seconds.read = std::exchange(read_seconds, 0.0);
     require_output_holds_facets(result.output, result.image_dim);
-    refuse_close_in_4d(work, result.image_dim, "a 3D mesh over time or of points in 4D");
     require_mesh_contour(input.mesh, work.isovalue, work.allows_empty);
     work.options.work.progress = bar.stage("facets");
     const auto set_axes = [&](auto& facets) {

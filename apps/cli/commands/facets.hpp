@@ -67,13 +67,12 @@ struct FacetsWork {
 };
 
 /// Extracts the facets of an image, checks them and writes them to result.output, one of `written`; fills the rest of
-/// the result. Throws InvalidArgument for closed facets of a 4D lattice.
+/// the result.
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
                         WrittenFiles& written);
 
 /// The same for a mesh of cells, which was read in this time, and several isovalues with a file for each. Throws
-/// InvalidArgument for closed facets of 4D cells, such as a 3D mesh at several times has, WriteFailed for 4D facets and
-/// a file that cannot hold them, and EmptyResult.
+/// WriteFailed for 4D facets and a file that cannot hold them, and EmptyResult.
 std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputFiles& files, double read_seconds,
                                             const std::vector<SpelledNumber>& isovalues,
                                             const std::vector<std::string>& outputs, FacetsWork work, ProgressBar& bar);

@@ -60,8 +60,9 @@ requires DimensionBetween<N, 2, 5>
 /// Options in 5D: direction, close, epsilon and work; nothing is ambiguous, so `ambiguity` has no effect. Errors: those
 /// of `divided_complex` and of `extract` of complexes; in 5D UnsupportedData for missing values (also for the mean of
 /// infinite samples of both signs), InvalidArgument for normals and for other triangulations. Time in 5D: a pass
-/// over the samples, and about 10 microseconds (kuhn) or 150 (symmetric) per active cell. Memory beside the contour: 70
-/// bytes (kuhn) or 270 (symmetric) per active cell. The result does not depend on the number of threads.
+/// over the samples, and some microseconds (kuhn) or tens of microseconds (symmetric) per active cell. Memory beside
+/// the contour: 70 bytes (kuhn) or 270 (symmetric) per active cell. The result does not depend on the number of
+/// threads.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Contour<N, Real> extract_divided(const Image<T, N>& image, Division division, double isovalue,

@@ -160,11 +160,10 @@ requires DimensionBetween<N, 2, 4>
 
 /// Extracts the contour {value = isovalue} of a complex of cells as facets: points on edges, segments in polygons,
 /// polygons in 3D cells and polyhedra in 4D cells. `options` as for `extract` of a complex, except that `triangulation`
-/// is ignored, and that ExtractOptions::close is not supported in 4D. The compact contour of `extract` subdivides the
-/// result: it has the same points, in the same order, and the same components and Euler characteristic. A complex of
-/// the cells of a grid has the facets of the image, in another order. (By rules that read the data, a 3D cell with a
-/// tunnel has triangles, with points and segments inside the cell.) Lattices:
-/// extract_facets(lattice_complex(image, lattice), isovalue).
+/// is ignored. The compact contour of `extract` subdivides the result: it has the same points, in the same order, and
+/// the same components and Euler characteristic. A complex of the cells of a grid has the facets of the image, in
+/// another order. (By rules that read the data, a 3D cell with a tunnel has triangles, with points and segments inside
+/// the cell.) Lattices: extract_facets(lattice_complex(image, lattice), isovalue).
 ///
 /// Next to missing values 4D facets are separated as those of images.
 ///
@@ -180,10 +179,10 @@ requires DimensionBetween<N, 2, 4>
 /// `number` counts the facets of a cell. Caps are in the faces of cells at the border of the complex; they come last,
 /// and `number` counts those of a face. Facets that bound only caps are caps, too.
 ///
-/// Errors: those of `extract`; InvalidArgument for `close` in 4D; TooLarge also for 2^32 incidences.
-/// O(C + P + S log S) time for S facets; what is not `extract` runs on one thread. The result is the same for any
-/// number of threads. Memory besides the result: that of `extract`, the compact contour, and 12 bytes for each side of
-/// a polygon; in 4D 40 for each polygon and 8 for each of its sides besides.
+/// Errors: those of `extract`; TooLarge also for 2^32 incidences. O(C + P + S log S) time for S facets; what is not
+/// `extract` runs on one thread. The result is the same for any number of threads. Memory besides the result: that of
+/// `extract`, the compact contour, and 12 bytes for each side of a polygon; in 4D 40 for each polygon and 8 for each of
+/// its sides besides.
 template <Coordinate Real = float, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,

@@ -103,41 +103,49 @@ class CellPolygons {
   std::vector<Index> ring_;
 };
 
-/// The 3D facets of a 4D cell, and which of them have the contour's vertices on edges.
+/// The 3D facets of a 4D cell, and which of them have a vertex of the contour.
 class FacetsOfCell {
  public:
   using Facets = std::bitset<kPolytopeCorners * 2>;  ///< a polyhedron of C corners has up to 2 C - 4 faces
 
+  /// The arguments must outlive this object.
+  FacetsOfCell(const CellGroups& cells, const VertexKeys& keys) : cells_(cells), keys_(keys) {}
+
   /// Of a cell, numbered by group, then of the polytopes.
-  void set_cell(const CellGroups& cells, Index cell) {
+  void set_cell(Index cell) {
     std::size_t g = 0;
-    while (g < cells.groups.size() && cell >= cells.groups[g].size())
-      cell -= static_cast<Index>(cells.groups[g++].size());
-    if (g < cells.groups.size()) {
-      corners_ = {cells.groups[g].cell(cell), cells.groups[g].corner_count};
+    while (g < cells_.groups.size() && cell >= cells_.groups[g].size())
+      cell -= static_cast<Index>(cells_.groups[g++].size());
+    if (g < cells_.groups.size()) {
+      corners_ = {cells_.groups[g].cell(cell), cells_.groups[g].corner_count};
       of_corner_.assign(corners_.size(), {});
-      const auto facets = facets_of(cells.groups[g].shape);
+      const auto facets = facets_of(cells_.groups[g].shape);
       for (std::size_t f = 0; f < facets.size(); ++f)
         for (unsigned i = 0; i < facets[f].corner_count; ++i) of_corner_[facets[f].corners[i]].set(f);
       return;
     }
-    corners_ = cells.polytopes.points_of(cell);
+    corners_ = cells_.polytopes.points_of(cell);
     of_corner_.assign(corners_.size(), {});
-    const std::vector<PrismFacet> facets = facets_of_prism(cells.polytopes.shape(cell));
+    const std::vector<PrismFacet> facets = facets_of_prism(cells_.polytopes.shape(cell));
     for (std::size_t f = 0; f < facets.size(); ++f)
       for (const std::uint8_t v : facets[f].corners) of_corner_[v].set(f);
   }
-  /// The facets that have an edge of the cell.
-  [[nodiscard]] Facets at(const EdgeEnds& edge) const noexcept {
-    Facets result;
-    result.set();
-    for (const Index end : edge)
-      result &=
-          of_corner_[static_cast<std::size_t>(std::find(corners_.begin(), corners_.end(), end) - corners_.begin())];
-    return result;
+  /// The facets that have a vertex on an edge or at a corner of the cell. None for other vertices: they are inside of a
+  /// facet or of the cell.
+  [[nodiscard]] Facets at(Index vertex) const noexcept {
+    if (vertex < keys_.edges.size()) return at_point(keys_.edges[vertex][0]) & at_point(keys_.edges[vertex][1]);
+    const std::size_t corner = vertex - keys_.before_caps;  // of caps
+    if (vertex >= keys_.before_caps && corner < keys_.corners.size()) return at_point(keys_.corners[corner]);
+    return {};
   }
 
  private:
+  [[nodiscard]] Facets at_point(Index point) const noexcept {
+    return of_corner_[static_cast<std::size_t>(std::find(corners_.begin(), corners_.end(), point) - corners_.begin())];
+  }
+
+  const CellGroups& cells_;
+  const VertexKeys& keys_;
   std::span<const Index> corners_;
   std::vector<Facets> of_corner_;
 };
@@ -147,30 +155,40 @@ class CellPolyhedra {
  public:
   /// Calls visit(ring, is_first) for the polygons of each polyhedron of consecutive tetrahedra, in the order of their
   /// first tetrahedra. Rings face outwards of the polyhedron. A polygon is in one 3D facet of the cell: it ends at
-  /// segments in two facets. `edges`: the ends of the edges that have the first vertices.
+  /// segments in two facets. Caps also have polygons in 2D faces, which are in two facets.
   template <class Visit>
-  void for_each(std::span<const std::array<Index, 4>> tetrahedra, const FacetsOfCell& cell,
-                const std::vector<EdgeEnds>& edges, const Visit& visit) {
+  void for_each(std::span<const std::array<Index, 4>> tetrahedra, const FacetsOfCell& cell, const Visit& visit) {
     find_border(tetrahedra);
-    const auto is_in_two_facets = [&](Index a, Index b) {
-      return a < edges.size() && b < edges.size() && (cell.at(edges[a]) & cell.at(edges[b])).count() >= 2;
-    };
     std::vector<bool> is_done(tetrahedra.size());
     for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
       const Index part = parts_.find(static_cast<Index>(i));
       if (is_done[part]) continue;
       is_done[part] = true;
-      around_.clear();
-      for (const auto& [triangle, of] : border_)
-        if (parts_.find(of) == part) around_.push_back(triangle);
       bool is_first = true;
-      polygons_.for_each(around_, is_in_two_facets,
-                         [&](std::span<const Index> ring) { visit(ring, std::exchange(is_first, false)); });
+      const auto visit_next = [&](std::span<const Index> ring) { visit(ring, std::exchange(is_first, false)); };
+      find_faces(part, cell);
+      for (std::size_t f = 0; f < faces_.size(); ++f)
+        polygons_.for_each(
+            faces_[f].second, [&](Index a, Index b) { return f == 0 && (cell.at(a) & cell.at(b)).count() >= 2; },
+            visit_next);
     }
   }
 
  private:
   using Triangle = std::array<Index, 3>;
+
+  /// The border of a part: the triangles inside of 3D facets, then those in each 2D face.
+  void find_faces(Index part, const FacetsOfCell& cell) {
+    faces_.assign(1, {});
+    for (const auto& [triangle, of] : border_) {
+      if (parts_.find(of) != part) continue;
+      FacetsOfCell::Facets face = cell.at(triangle[0]) & cell.at(triangle[1]) & cell.at(triangle[2]);
+      if (face.count() < 2) face.reset();
+      auto found = std::find_if(faces_.begin(), faces_.end(), [&](const auto& each) { return each.first == face; });
+      if (found == faces_.end()) found = faces_.insert(found, {face, {}});
+      found->second.push_back(triangle);
+    }
+  }
 
   /// Joins tetrahedra with a common triangle; the others are the border, in the order of the tetrahedra.
   void find_border(std::span<const std::array<Index, 4>> tetrahedra) {
@@ -207,7 +225,7 @@ class CellPolyhedra {
 
   DisjointSets parts_;
   std::vector<std::pair<Triangle, Index>> border_;
-  std::vector<Triangle> around_;
+  std::vector<std::pair<FacetsOfCell::Facets, std::vector<Triangle>>> faces_;
   CellPolygons polygons_;
 };
 
@@ -339,28 +357,13 @@ struct PolygonUse {
 /// The polyhedra of a 4D contour, and their polygons, each once.
 class Polyhedra {
  public:
+  /// `active`, `caps`: the cells of the simplices, and of those of the caps.
   template <class Real>
-  Polyhedra(const Contour<4, Real>& contour, const CellGroups& cells, const std::vector<CellSimplices>& active,
-            const std::vector<EdgeEnds>& edges) {
-    Rings all;
-    CellPolyhedra in_cell;
-    FacetsOfCell facets;
-    std::size_t from = 0;
-    for (const auto& [cell, signature, end] : active) {
-      facets.set_cell(cells, cell);
-      std::uint8_t number = 0;
-      in_cell.for_each(std::span(contour.simplices.data() + from, end - from), facets, edges,
-                       [&](std::span<const Index> ring, bool is_first) {
-                         if (is_first) {
-                           places.push_back({cell, signature, 0, number++, false});
-                           ends.push_back(all.ends.size());
-                         }
-                         all.add(ring, {});
-                         ends.back() = all.ends.size();
-                       });
-      from = end;
-    }
-    number_polygons(all);
+  Polyhedra(const Contour<4, Real>& contour, const std::vector<CellSimplices>& active,
+            const std::vector<CellSimplices>& caps, FacetsOfCell& facets) {
+    add(contour, active, 0, false, facets);
+    add(contour, caps, active.empty() ? 0 : active.back().end, true, facets);
+    number_polygons();
   }
 
   std::vector<FacetPlace> places;
@@ -369,15 +372,37 @@ class Polyhedra {
   Rings polygons;  ///< in the order and direction of their first uses
 
  private:
+  /// Adds the polyhedra in cells. `from`: the first simplex of the cells.
+  template <class Real>
+  void add(const Contour<4, Real>& contour, const std::vector<CellSimplices>& cells, std::size_t from, bool are_caps,
+           FacetsOfCell& facets) {
+    CellPolyhedra in_cell;
+    std::size_t at = from;
+    for (const auto& [cell, signature, end] : cells) {
+      facets.set_cell(cell);
+      std::uint8_t number = 0;
+      in_cell.for_each(std::span(contour.simplices.data() + at, from + end - at), facets,
+                       [&](std::span<const Index> ring, bool is_first) {
+                         if (is_first) {
+                           places.push_back({cell, signature, 0, number++, are_caps});
+                           ends.push_back(all_.ends.size());
+                         }
+                         all_.add(ring, {});
+                         ends.back() = all_.ends.size();
+                       });
+      at = from + end;
+    }
+  }
+
   /// Finds the rings that two polyhedra have in opposite directions.
-  void number_polygons(const Rings& all) {
-    const std::size_t count = all.ends.size();
+  void number_polygons() {
+    const std::size_t count = all_.ends.size();
     Rings known;  // from the smallest vertex towards its smaller neighbour
     std::vector<std::int8_t> signs(count);
     std::vector<Index> order(count);
     std::vector<Index> ring;
     for (std::size_t i = 0; i < count; ++i) {
-      ring.assign(all[i].begin(), all[i].end());
+      ring.assign(all_[i].begin(), all_[i].end());
       std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
       signs[i] = ring[1] < ring.back() ? std::int8_t{1} : std::int8_t{-1};
       if (signs[i] < 0) std::reverse(ring.begin() + 1, ring.end());
@@ -398,11 +423,13 @@ class Polyhedra {
     for (std::size_t i = 0; i < count; ++i) {
       if (first[i] == i) {
         numbers[i] = static_cast<Index>(polygons.ends.size());
-        polygons.add(all[i], {});
+        polygons.add(all_[i], {});
       }
       uses.push_back({numbers[first[i]], static_cast<std::int8_t>(signs[i] * signs[first[i]])});
     }
   }
+
+  Rings all_;  ///< of all polyhedra
 };
 
 /// Adds polyhedra with their boundaries.
@@ -459,13 +486,15 @@ FacetHierarchy<N, Real> facets_of_rings(const Complex<N>& complex, double isoval
 /// Facets of 4D contours.
 template <class Real>
 FacetHierarchy<4, Real> facets_in_4d(const Complex<4>& complex, double isovalue, const ExtractOptions& options) {
-  std::vector<CellSimplices> cells;
+  std::vector<CellSimplices> cells, caps;
   VertexKeys keys;
   Surroundings<4> around;
   around.simplices = &cells;
+  around.caps = &caps;
   around.keys = &keys;  // so the contour is not separated beside missing values: here facets are
   const Contour<4, Real> contour = extract_in<Real, 4>(complex, isovalue, options, around).contour;
-  const Polyhedra polyhedra(contour, ComplexAccess::cells(complex), cells, keys.edges);
+  FacetsOfCell in_cell(ComplexAccess::cells(complex), keys);
+  const Polyhedra polyhedra(contour, cells, caps, in_cell);
   require_incidences(std::max(polyhedra.uses.size(), polyhedra.polygons.vertices.size()));
   FacetHierarchy<4, Real> facets;
   const auto number = take_points(contour, vertices_of(polyhedra.polygons, contour.vertices.size()), facets);
@@ -483,9 +512,6 @@ FacetHierarchy<4, Real> facets_in_4d(const Complex<4>& complex, double isovalue,
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,
                                                                           const ExtractOptions& options) {
-  if (N == 4 && options.close)
-    throw Error(ErrorCode::InvalidArgument,
-                "close of facets in 4D cells of a mesh or lattice; expected a contour that is not closed");
   ExtractOptions of_contour = options;
   of_contour.triangulation = Triangulation::compact;
   FacetHierarchy<N, Real> facets;
