@@ -375,11 +375,7 @@ std::vector<std::pair<const char*, Division>> divisions() {
 template <class Real>
 AnyContour divided_contour_of(const AnyImage& image, Division division, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
-    if constexpr (N <= 4) {
-      return {extract<Real>(divided_complex(view, division, level), level, options), level};
-    } else {
-      throw_dimension("divisions", N, "2 to 4 dimensions");
-    }
+    return {extract_divided<Real>(view, division, level, options), level};
   });
 }
 
@@ -422,6 +418,8 @@ std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, const s
   const ExtractOptions options = extract_options(arguments, call);
   const auto of_view = [&]<class T, int N>(const Image<T, N>& view) -> ContourSize {
     if (axes.empty() && lattice.empty() && division.empty()) return count(view, level, options);
+    if (!division.empty())
+      return count_divided(view, named<Division>("division", division, divisions()), level, options);
     if constexpr (N <= 4) {
       if (!lattice.empty()) {
         const auto on = named<Lattice>("lattice", lattice, lattices());
@@ -429,11 +427,9 @@ std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, const s
         const auto contour = extract_lattice(view, on, level, options, periods_of(view.grid(), axes, periods));
         return {contour.vertices.size(), contour.simplices.size()};
       }
-      if (!division.empty())
-        return count(divided_complex(view, named<Division>("division", division, divisions()), level), level, options);
       return count_periodic(view, periods_of(view.grid(), axes, periods), level, options);
     }
-    throw_dimension("periodic axes, lattices and divisions", N, "2 to 4 dimensions");
+    throw_dimension("periodic axes and lattices", N, "2 to 4 dimensions");
   };
   const ContourSize size = call.run([&] { return visit_image(image, of_view); });
   return {size.vertices, size.simplices};
@@ -494,7 +490,7 @@ void bind_extract(py::module_& m) {
         py::arg("periods"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
         doc::extract_lattice);
   m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),
-        py::arg("double"), py::arg("options"), py::arg("progress"), doc::divided_complex);
+        py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_divided);
   m.def("unroll", &unroll_any, py::arg("contour"), doc::unroll);
   m.def("count", &count_any, py::arg("image"), py::arg("axes"), py::arg("periods"), py::arg("lattice"),
         py::arg("division"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);

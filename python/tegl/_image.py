@@ -95,7 +95,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         "cubic" overrides. With `periodic`, the layers must be even in number. See docs/other-tilings.md.
     division
         How cells are divided into simplices: "kuhn" or "symmetric", in 2D and 3D also "alternating", or "hybrid", which
-        divides ambiguous cells only. See docs/other-tilings.md.
+        divides ambiguous cells only. In 5D without normals, missing values and "barycentric". See docs/other-tilings.md.
     positions
         Where vertices lie between two samples: "linear" (interpolation), "relaxed" (smooth surfaces of masks and labels,
         without stair steps; every sample stays on its side), "filtered" (linear in `positions_image`) or "gravitation"

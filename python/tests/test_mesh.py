@@ -211,6 +211,19 @@ def test_contours_of_divided_cells():
         tegl.contour(np.zeros((3, 3, 3, 3)), 0.0, division="hybrid", allow_empty=True)
 
 
+def test_contours_of_divided_cells_in_5d():
+    ball = 0.7 - np.sqrt(sum(x**2 for x in np.meshgrid(*[np.linspace(-1, 1, 5)] * 5, indexing="ij")))
+    for division in ("kuhn", "symmetric"):
+        surface = tegl.contour(ball, 0.0, division=division, spacing=0.5)
+        assert surface.check().is_closed and surface.check().euler == 2
+        assert surface.measure().content == pytest.approx(8 / 15 * np.pi**2 * 0.7**5, rel=0.3)
+        assert tuple(tegl.count(ball, 0.0, division=division)) == (len(surface.vertices), len(surface.simplices))
+    with pytest.raises(ValueError, match="division hybrid of a 5D image; expected kuhn or symmetric"):
+        tegl.contour(ball, 0.0, division="hybrid")
+    with pytest.raises(ValueError, match="normals of a divided 5D image; expected none"):
+        tegl.contour(ball, 0.0, division="kuhn", normals=True)
+
+
 def test_contours_of_lattices_and_of_scattered_points():
     layers, n = 30, 22
     k, j, i = np.meshgrid(np.arange(layers), np.arange(n), np.arange(n), indexing="ij")

@@ -64,15 +64,26 @@ TEST_F(FacetsCommand, WritesThePolygonsInTheCellsOfAMesh) {
     std::ifstream written(path("out.vtu"));
     const std::string text{std::istreambuf_iterator<char>(written), {}};
     EXPECT_THAT(text, HasSubstr("Name=\"cell\""));
-    expect_failure(2, {file, "--var", "c", "--iso", "0", "--facets", "--close", "-o", path("o.vtu")},
-                   {"close of facets in cells of a mesh"});
+    // cut by the border
+    const nlohmann::json open = contour({file, "--var", "c", "--iso", "-1", "--facets", "-o", path("out.vtu")});
+    EXPECT_GT(open["boundary_facets"], 0);
+    const nlohmann::json closed =
+        contour({file, "--var", "c", "--iso", "-1", "--facets", "--close", "-o", path("out.vtu")});
+    EXPECT_EQ(closed["boundary_facets"], 0);
+    EXPECT_GT(closed["facets"][kind], open["facets"][kind]);
+    EXPECT_EQ(closed["euler"],
+              contour({file, "--var", "c", "--iso", "-1", "--close", "-o", path("simplices.vtkhdf")})["euler"]);
   }
 }
 
-TEST_F(FacetsCommand, RefusesCellsIn4D) {
-  const std::string points = "x,y,z,t,c\n0,0,0,0,1\n1,0,0,0,0\n0,1,0,0,0\n0,0,1,0,0\n0,0,0,1,0\n";
-  expect_failure(2, {write("points.csv", points), "--iso", "0.5", "--facets", "-o", path("o.vtu")},
-                 {"--facets of points in 4D; expected points in 2D or 3D"});
+TEST_F(FacetsCommand, WritesThePolyhedraInCellsIn4D) {
+  const std::string points = write("points.csv", "x,y,z,t,c\n0,0,0,0,1\n1,0,0,0,0\n0,1,0,0,0\n0,0,1,0,0\n0,0,0,1,1\n");
+  const nlohmann::json prism = contour({points, "--iso", "0.5", "--facets", "-o", path("o.vtu")});
+  EXPECT_EQ(prism["facets"], (nlohmann::json{{"points", 6}, {"segments", 9}, {"polygons", 5}, {"polyhedra", 1}}));
+  const nlohmann::json closed = contour({points, "--iso", "0.5", "--facets", "--close", "-o", path("o.vtu")});
+  EXPECT_EQ(closed["facets"], (nlohmann::json{{"points", 8}, {"segments", 16}, {"polygons", 14}, {"polyhedra", 6}}));
+  EXPECT_EQ(closed["boundary_facets"], 0);
+  expect_failure(6, {points, "--iso", "0.5", "--facets", "-o", path("p.vtkhdf")}, {"cannot hold the polyhedra"});
   const std::string tetrahedron =
       R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1">
 <PointData><DataArray type="Float64" Name="f" format="ascii">0 1 1 1</DataArray></PointData>
@@ -81,8 +92,10 @@ TEST_F(FacetsCommand, RefusesCellsIn4D) {
 <DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>
 <DataArray type="UInt8" Name="types" format="ascii">10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
   const std::string first = write("first.vtu", tetrahedron), second = write("second.vtu", tetrahedron);
-  expect_failure(2, {first, second, "--time-step", "1", "--iso", "0.5", "--facets", "-o", path("o.vtu")},
-                 {"--facets of a 3D mesh at 2 times; expected one time, or a 2D mesh"});
+  const nlohmann::json swept =
+      contour({first, second, "--time-step", "1", "--iso", "0.5", "--facets", "-o", path("o.vtu")});
+  EXPECT_EQ(swept["facets"], (nlohmann::json{{"points", 6}, {"segments", 9}, {"polygons", 5}, {"polyhedra", 1}}));
+  EXPECT_EQ(swept["image_dim"], 4);
 }
 
 TEST_F(FacetsCommand, WritesFacetsWithTheTopologyOfTheContour) {

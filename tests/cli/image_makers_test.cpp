@@ -311,6 +311,34 @@ TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
     EXPECT_EQ(refused.exit, 2) << refused.err;
     EXPECT_EQ(refused.err, std::string("tegl: ") + option + " with an image of 5 axes; expected 2 to 4 axes\n");
   }
+  for (const char* const division : {"kuhn", "symmetric"}) {
+    const RunResult divided = run_tegl(
+        {"contour", path("five.nrrd"), "--iso", "0", "--division", division, "-o", path("divided.vtkhdf"), "--json"});
+    ASSERT_EQ(divided.exit, 0) << divided.err;
+    EXPECT_EQ(divided.json()["euler"], 2) << division;
+    EXPECT_EQ(divided.json()["boundary_simplices"], 0) << division;
+    EXPECT_EQ(divided.json()["tiles"], 3125 * (*division == 'k' ? 120 : 1920)) << division;
+  }
+  // other commands contour the image in the same way
+  const RunResult cut = run_tegl({"slice", path("five.nrrd"), "--iso", "0", "--division", "kuhn", "--at", "u=0.2", "-o",
+                                  path("cut.vtkhdf"), "--json"});
+  ASSERT_EQ(cut.exit, 0) << cut.err;
+  EXPECT_EQ(cut.json()["euler"], 0);  // a 3-sphere
+  EXPECT_EQ(cut.json()["boundary_simplices"], 0);
+  const RunResult size = run_tegl({"measure", path("five.nrrd"), "--iso", "0", "--division", "kuhn", "--json"});
+  ASSERT_EQ(size.exit, 0) << size.err;
+  EXPECT_GT(size.json()["content"], 0.5);
+  const auto expect_no_division = [&](const std::vector<std::string>& with, const std::string& part) {
+    std::vector<std::string> arguments = {"contour", path("five.nrrd"), "--iso", "0", "--division", "kuhn",
+                                          "-o",      path("no.vtkhdf")};
+    arguments.insert(arguments.end(), with.begin(), with.end());
+    expect_refused(arguments, part, 2);
+  };
+  expect_no_division({"--normals"}, "--normals gradient with --division and an image of 5 axes; expected no normals");
+  expect_no_division({"--triangulation", "barycentric"},
+                     "--triangulation barycentric with --division and an image of 5 axes; expected compact");
+  expect_refused({"contour", path("five.nrrd"), "--iso", "0", "--division", "hybrid", "-o", path("no.vtkhdf")},
+                 "division hybrid of a 5D image; expected kuhn or symmetric", 2);
   const RunResult about = run_tegl({"info", path("five.vtkhdf"), "--json"});
   ASSERT_EQ(about.exit, 0) << about.err;
   EXPECT_EQ(about.json()["image_dim"], 5);

@@ -369,7 +369,16 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   expect_refused({"--lattice", "hexagonal", "-o", output}, "hexagonal");
   expect_refused({"--lattice", "bcc", "--periodic", "y=19", "-o", output},
                  "the period of axis 1 (y) is 19; expected 20");
-  expect_refused({"--lattice", "bcc", "--facets", "-o", output}, "--lattice bcc with --facets");
+  const nlohmann::json facets =
+      run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--facets", "-o", path("facets.vtu")});
+  EXPECT_EQ(facets["tiles"], report["tiles"]);
+  EXPECT_EQ(facets["active_tiles"], report["active_tiles"]);
+  EXPECT_EQ(facets["facets"]["points"], report["vertices"]);
+  EXPECT_LT(facets["facets"]["polygons"], report["simplices"]);
+  EXPECT_EQ(facets["euler"], 2);
+  EXPECT_EQ(facets["boundary_facets"], 0);
+  expect_refused({"--lattice", "bcc", "--facets", "--periodic", "x", "-o", path("facets.vtu")},
+                 "--periodic x with --facets of samples on a lattice; expected one of the two");
   expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output},
                  "normals on a lattice are sobel; expected gradient");
   (void)run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--normals", "-o", output});
@@ -490,8 +499,7 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
     refused({"scale-space", ball, "--sigmas", "1:2:3", "-o", path("s.nrrd")}, "lattice fcc");
     refused({"elements", ball, "--iso", "0", "--per", "cell", "-o", path("e.txt")}, "--per cell on the lattice fcc");
     for (const std::vector<std::string>& more :
-         std::vector<std::vector<std::string>>{{"--facets", "-o", path("s.vtkhdf")},
-                                               {"--pick", "0,0,0", "-o", output},
+         std::vector<std::vector<std::string>>{{"--pick", "0,0,0", "-o", output},
                                                {"--division", "kuhn", "-o", output},
                                                {"--samples-are", "cells", "-o", output},
                                                {"--positions", "gravitation", "-o", output},
@@ -499,11 +507,16 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
       std::vector<std::string> arguments = {"contour", ball, "--iso", "0"};
       arguments.insert(arguments.end(), more.begin(), more.end());
       refused(arguments, "is on the lattice fcc; expected it without this, or --lattice cubic");
-      if (more.front() == "--facets") {
-        arguments.insert(arguments.end(), {"--lattice", "cubic"});
-        EXPECT_EQ(run_tegl(arguments).exit, 0) << more.front();
-      }
     }
+    const auto facets = [&](const std::vector<std::string>& more) {
+      std::vector<std::string> arguments = {"contour", ball, "--iso", "0", "--facets", "-o", path("s.vtkhdf")};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      return run_json(arguments)["tiles"];
+    };
+    EXPECT_NE(facets({}), facets({"--lattice", "cubic"}));
+    EXPECT_EQ(facets({}), facets({"--lattice", "fcc"}));
+    refused({"contour", ball, "--iso", "0", "--facets", "--periodic", "x", "-o", path("s.vtkhdf")},
+            "--periodic x with --facets of samples on a lattice");
   }
 }
 

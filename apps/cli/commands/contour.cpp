@@ -159,11 +159,11 @@ class ContourCommand final : public Command {
         return to_mesh(std::move(extraction.contour));
       };
       const bool single_precision = given_.extraction.single_precision();
-      result.mesh =
-          given_.positions.are_linear()
-              ? extract_and_use<Mesh>(input.image, result.isovalue_of_samples, options, single_precision, finished)
-              : extract_placed_and_use<Mesh>(input.image, result.isovalue_of_samples, placed, options, single_precision,
-                                             finished);
+      result.mesh = given_.positions.are_linear()
+                        ? extract_and_use<Mesh>(input.image, result.isovalue_of_samples, options, single_precision,
+                                                finished, given_.extraction.tiling())
+                        : extract_placed_and_use<Mesh>(input.image, result.isovalue_of_samples, placed, options,
+                                                       single_precision, finished);
       result.seconds.add(*result.stats);
       check_and_write(result, bar, written);
       leave_the_sizes(result);
@@ -467,14 +467,16 @@ class ContourCommand final : public Command {
       require_contour(input, result.isovalue, given_.extraction.allows_empty());
     }
     Tiling tiling = given_.extraction.tiling();
-    remark(take_longitudes(input.image, given_.extraction, tiling));
+    given_.extraction.take_lattice(input.info, file(), tiling);
+    if (!tiling.lattice) remark(take_longitudes(input.image, given_.extraction, tiling));
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (FacetsResult& result : results)
-      write_image_facets(input.image,
-                         {result.isovalue, options, given_.extraction.single_precision(), given_.no_check,
-                          given_.compress.compression(), tiling.periodic},
-                         bar, result, written);
+      write_image_facets(
+          input.image,
+          {result.isovalue, options, given_.extraction.single_precision(), given_.no_check,
+           given_.compress.compression(), tiling.periodic, given_.extraction.allows_empty(), tiling.lattice},
+          bar, result, written);
     written.keep();
     bar.clear();
     for (const FacetsResult& result : results)

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 #include "base/numbers.hpp"
+#include "commands/facets.hpp"
 #include "input/cuts.hpp"
 
 namespace tegl::cli {
@@ -95,7 +97,7 @@ template <class Refuse>
 void ContourArguments::for_plain_cells(const Refuse& refuse) const {
   if (is_streamed()) refuse(stream ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
   if (!index.empty()) refuse("--index");
-  if (facets) refuse("--facets");
+  if (facets) refuse(kFacets);
   if (picks()) refuse("--pick");
   if (one_file) refuse("--one-file");
   if (extraction.polygon_triangulation()) refuse("a triangulation of polygons");
@@ -109,6 +111,8 @@ void ContourArguments::require_tiling() const {
                 fmt::format("--unroll with {}; expected one of the two", facets ? "--facets" : "--stream"));
   for_plain_cells([&](const char* with) {
     if (is_streamed() && extraction.tiling().lattice) return;
+    if (with == std::string_view(kFacets) && extraction.tiling().lattice)
+      return extraction.refuse_periodic_with(kFacetsOnLattice);
     is_streamed() || facets ? extraction.refuse_other_tiling(with) : extraction.refuse_tiling(with);
   });
   if (attributes.wanted() && extraction.tiling().of_cells) extraction.refuse_tiling("--attribute");
@@ -169,8 +173,9 @@ void ContourArguments::require_to_5d() const {
 void ContourArguments::refuse_tiling_of_file(const ImageInfo& info, const std::string& file) const {
   for_plain_cells([&](const char* with) {
     extraction.refuse_cells(info.samples_are_cells, file, with);
-    if (!is_streamed()) extraction.refuse_lattice(info, file, with);
+    if (!is_streamed() && with != std::string_view(kFacets)) extraction.refuse_lattice(info, file, with);
   });
+  if (facets && extraction.has_lattice(info)) extraction.refuse_periodic_with(kFacetsOnLattice);
   if (attributes.wanted()) extraction.refuse_cells(info.samples_are_cells, file, "--attribute");
   if (!positions.are_linear()) extraction.refuse_lattice(info, file, "--positions");
 }

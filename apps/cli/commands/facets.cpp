@@ -99,27 +99,19 @@ void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& wo
   result.seconds.write = watch.lap();
 }
 
-template <int N>
-void write_facets_of(const Complex<N>& complex, const CellMesh& mesh, const FacetsWork& work, ProgressBar& bar,
+/// Extracts the facets of a complex, sets their axes with set_axes(facets), and writes them.
+template <int N, class SetAxes>
+void write_facets_of(const Complex<N>& complex, const SetAxes& set_axes, const FacetsWork& work, ProgressBar& bar,
                      FacetsResult& result, WrittenFiles& written) {
-  if constexpr (N == 4) {
-    throw Error(
-        ErrorCode::InvalidArgument,
-        mesh.times.size() > 1
-            ? fmt::format("--facets of a 3D mesh at {} times; expected one time, or a 2D mesh", mesh.times.size())
-            : "--facets of points in 4D; expected points in 2D or 3D");
-  } else {
-    Stopwatch watch;
-    const auto finish = [&](auto facets) {
-      for (std::size_t a = 0; a < N; ++a)
-        facets.axis_names[a] = a < mesh.axis_names.size() ? mesh.axis_names[a] : std::string("t");
-      result.seconds.generate = watch.lap();
-      result.stats = stats_of(facets, facets.cells, result.seconds.generate);
-      check_and_write(facets, work, bar, result, written);
-    };
-    work.single_precision ? finish(extract_facets<float>(complex, work.isovalue, work.options))
-                          : finish(extract_facets<double>(complex, work.isovalue, work.options));
-  }
+  Stopwatch watch;
+  const auto finish = [&](auto facets) {
+    set_axes(facets);
+    result.seconds.generate = watch.lap();
+    result.stats = stats_of(facets, facets.cells, result.seconds.generate);
+    check_and_write(facets, work, bar, result, written);
+  };
+  work.single_precision ? finish(extract_facets<float>(complex, work.isovalue, work.options))
+                        : finish(extract_facets<double>(complex, work.isovalue, work.options));
 }
 
 [[noreturn]] void fail_output(const fs::path& output, std::string_view why) {
@@ -216,7 +208,8 @@ void require_output_holds_facets(const fs::path& output, int image_dim) {
 
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
                         WrittenFiles& written) {
-  ExtractOptions options = work.options;
+  FacetsWork on_lattice = work;
+  ExtractOptions& options = on_lattice.options;
   options.work.progress = bar.stage("facets");
   Stopwatch watch;
   const auto finish = [&](const auto& facets, std::uint64_t tiles) {
@@ -224,7 +217,16 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
     result.stats = stats_of(facets, tiles, result.seconds.generate);
     check_and_write(facets, work, bar, result, written);
   };
-  const auto of_owned = [&](const auto& owned) { use_facets<void>(owned, work, options, finish); };
+  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+    if (!work.lattice) return use_facets<void>(owned, work, options, finish);
+    const auto set_axes = [&](auto& facets) {
+      for (int a = 0; a < N; ++a) {
+        facets.axis_names[a] = owned.grid.axes[a].name;
+        facets.axis_units[a] = owned.grid.axes[a].unit;
+      }
+    };
+    write_facets_of(lattice_complex(owned.view(), *work.lattice), set_axes, on_lattice, bar, result, written);
+  };
   std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
 }
 
@@ -242,9 +244,15 @@ std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputF
     result.image_dim = input.space_dim();
     result.isovalue = work.isovalue = isovalues[i].value;
     result.seconds.read = std::exchange(read_seconds, 0.0);
+    require_output_holds_facets(result.output, result.image_dim);
     require_mesh_contour(input.mesh, work.isovalue, work.allows_empty);
     work.options.work.progress = bar.stage("facets");
-    std::visit([&](const auto& complex) { write_facets_of(complex, input.mesh, work, bar, result, written); },
+    const auto set_axes = [&](auto& facets) {
+      const std::vector<std::string>& names = input.mesh.axis_names;
+      for (std::size_t a = 0; a < facets.axis_names.size(); ++a)
+        facets.axis_names[a] = a < names.size() ? names[a] : std::string("t");
+    };
+    std::visit([&](const auto& complex) { write_facets_of(complex, set_axes, work, bar, result, written); },
                input.complex);
   }
   written.keep();

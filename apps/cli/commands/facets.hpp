@@ -4,6 +4,7 @@
 // triangulated polygons.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -15,9 +16,13 @@
 #include "tegl/facet_hierarchy.hpp"
 #include "tegl/io/images.hpp"
 #include "tegl/io/write_options.hpp"
+#include "tegl/lattice.hpp"
 #include "tegl/polygons.hpp"
 
 namespace tegl::cli {
+
+inline constexpr const char* kFacets = "--facets";
+inline constexpr const char* kFacetsOnLattice = "--facets of samples on a lattice";
 
 /// Facets that were extracted and written.
 struct FacetsResult {
@@ -58,6 +63,7 @@ struct FacetsWork {
   Compression compression = Compression::none;
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
   bool allows_empty = false;               ///< of meshes
+  std::optional<Lattice> lattice = {};     ///< on which the samples of an image are; then without periodic axes
 };
 
 /// Extracts the facets of an image, checks them and writes them to result.output, one of `written`; fills the rest of
@@ -66,7 +72,7 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
                         WrittenFiles& written);
 
 /// The same for a mesh of cells, which was read in this time, and several isovalues with a file for each. Throws
-/// InvalidArgument for 4D cells, such as a 3D mesh at several times has, and EmptyResult.
+/// WriteFailed for 4D facets and a file that cannot hold them, and EmptyResult.
 std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputFiles& files, double read_seconds,
                                             const std::vector<SpelledNumber>& isovalues,
                                             const std::vector<std::string>& outputs, FacetsWork work, ProgressBar& bar);

@@ -521,10 +521,7 @@ class SliceCommand final : public Command {
     cut_extraction(
         [&](const auto& use) {
           const double isovalue = *results[0].isovalue;
-          if constexpr (std::is_same_v<AnyDimension, AnyImage>)
-            extract_and_use<Nothing>(image, isovalue, options, options_.single_precision(), use, tiling);
-          else
-            extract_and_use<Nothing>(image, isovalue, options, options_.single_precision(), use);
+          extract_and_use<Nothing>(image, isovalue, options, options_.single_precision(), use, tiling);
         },
         results, bar);
   }

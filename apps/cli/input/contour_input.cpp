@@ -307,11 +307,13 @@ void ContourInputCommand::contour_5d(const ReadImage5dResult& input, ExtractOpti
   result.single_precision = options_.single_precision();
   result.seconds.read = watch.lap();
   options.work.progress = bar.stage("contour");
-  result.contour = extract_and_use<AnyContour>(input.image, *result.isovalue, options, options_.single_precision(),
-                                               [&](auto extraction) {
-                                                 result.stats = extraction.stats;
-                                                 return AnyContour(widened(std::move(extraction.contour)));
-                                               });
+  result.contour = extract_and_use<AnyContour>(
+      input.image, *result.isovalue, options, options_.single_precision(),
+      [&](auto extraction) {
+        result.stats = extraction.stats;
+        return AnyContour(widened(std::move(extraction.contour)));
+      },
+      options_.tiling());
   result.seconds.add(*result.stats);
 }
 

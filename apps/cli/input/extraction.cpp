@@ -100,10 +100,11 @@ void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> wi
                                     "axes before; triangular (2D), fcc or bcc (3D), d4 or fcc_in_time (4D); cubic: on "
                                     "none; default: as the file says")
                          ->check(CLI::IsMember({"cubic", "triangular", "fcc", "bcc", "d4", "fcc_in_time"})));
-  options_.push_back(app.add_option("--division", division_,
-                                    "divide cells into simplices: kuhn or symmetric, in 2D and 3D also alternating, or "
-                                    "hybrid (ambiguous cells only)")
-                         ->check(CLI::IsMember({"kuhn", "alternating", "symmetric", "hybrid"})));
+  options_.push_back(
+      app.add_option("--division", division_,
+                     "divide cells into simplices: kuhn or symmetric (2D to 5D), in 2D and 3D also alternating, or "
+                     "hybrid (ambiguous cells only)")
+          ->check(CLI::IsMember({"kuhn", "alternating", "symmetric", "hybrid"})));
   add_samples_are_to(app);
 }
 
@@ -320,9 +321,14 @@ void ExtractionOptions::require_to_5d() const {
   constexpr const char* kWhat = "an image of 5 axes";
   refuse_periodic_with(kWhat);
   refuse_lattice_with(kWhat);
-  refuse_division_with(kWhat);
   if (samples_ == "cells")
     throw Error(ErrorCode::InvalidArgument, fmt::format("--samples-are cells with {}; expected points", kWhat));
+  if (!division_.empty() && !normals_.empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--normals {} with --division and {}; expected no normals", normals_, kWhat));
+  if (!division_.empty() && triangulation_ != "compact")
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--triangulation {} with --division and {}; expected compact", triangulation_, kWhat));
   if (wants_shape_normals())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--normals {} with {}; expected --normals gradient, or none", normals_, kWhat));

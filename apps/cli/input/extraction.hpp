@@ -251,9 +251,9 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
       return use(extract_lattice_with_stats<double>(owned.view(), *tiling.lattice, isovalue, options, periods));
     }
     if (tiling.division) {
-      const Complex<N> complex = divided_complex(owned.view(), *tiling.division, isovalue);
-      if (single_precision) return use(extract_with_stats<float>(complex, isovalue, options));
-      return use(extract_with_stats<double>(complex, isovalue, options));
+      if (single_precision)
+        return use(extract_divided_with_stats<float>(owned.view(), *tiling.division, isovalue, options));
+      return use(extract_divided_with_stats<double>(owned.view(), *tiling.division, isovalue, options));
     }
     if (!tiling.periodic.empty()) {
       const AxisPeriods<N> periods = periods_of(owned.grid, tiling.periodic);
@@ -266,12 +266,17 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
-/// The same for an image in 5 dimensions.
+/// As above, for an image in 5 dimensions, of whose tilings only divisions are used.
 template <class Result, class Use>
 Result extract_and_use(const AnyImage5d& image, double isovalue, const ExtractOptions& options, bool single_precision,
-                       const Use& use) {
+                       const Use& use, const Tiling& tiling = {}) {
   return std::visit(
       [&](const auto& owned) -> Result {
+        if (tiling.division) {
+          if (single_precision)
+            return use(extract_divided_with_stats<float>(owned.view(), *tiling.division, isovalue, options));
+          return use(extract_divided_with_stats<double>(owned.view(), *tiling.division, isovalue, options));
+        }
         if (single_precision) return use(extract_with_stats<float>(owned.view(), isovalue, options));
         return use(extract_with_stats<double>(owned.view(), isovalue, options));
       },

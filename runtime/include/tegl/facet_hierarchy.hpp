@@ -158,26 +158,33 @@ requires DimensionBetween<N, 2, 4>
                                                      const ExtractOptions& options = {},
                                                      const AxisPeriods<N>& periods = {});
 
-/// Extracts the contour {value = isovalue} of a complex of cells as facets, N = 2 or 3: points on edges, segments in
-/// faces, and in 3D polygons in cells. `options` as for `extract` of a complex, except that `triangulation` is ignored
-/// and ExtractOptions::close is not supported. The compact contour of `extract` subdivides the result: it has the same
-/// points, in the same order, and the same components and Euler characteristic. A complex of the cells of a grid has
-/// the facets of the image, in another order. (By rules that read the data, a cell with a tunnel has triangles, with
-/// points and segments inside the cell.) Lattices: extract_facets(lattice_complex(image, lattice), isovalue).
+/// Extracts the contour {value = isovalue} of a complex of cells as facets: points on edges, segments in polygons,
+/// polygons in 3D cells and polyhedra in 4D cells. `options` as for `extract` of a complex, except that `triangulation`
+/// is ignored. The compact contour of `extract` subdivides the result: it has the same points, in the same order, and
+/// the same components and Euler characteristic. A complex of the cells of a grid has the facets of the image, in
+/// another order. (By rules that read the data, a 3D cell with a tunnel has triangles, with points and segments inside
+/// the cell.) Lattices: extract_facets(lattice_complex(image, lattice), isovalue).
+///
+/// Next to missing values 4D facets are separated as those of images.
 ///
 /// FacetHierarchy::cells is the number of cells. Cells are numbered by type, in the order of the numbers below, and
 /// within a type in the order of the input: triangles, quadrilaterals, tetrahedra, wedges, pyramids, hexahedra,
-/// octahedra, then polygons or polyhedra; so the numbers are the input's if all cells have one type. Points,
-/// segments and polygons are in the order of the contour's vertices, of their points, and of the cells. Signatures are
-/// 0 in polygons and polyhedra; in other cells bit v is corner v of the cell, in hexahedra and quadrilaterals the
+/// octahedra, then polygons or polyhedra; in 4D simplices, prisms over these 3D cells but octahedra, prisms over
+/// octahedra, 16-cells, then prisms over polyhedra. So the numbers are the input's if all cells have one type. Points
+/// are in the order of the contour's vertices, segments in that of their points, (N-1)-facets in that of the cells, and
+/// in 4D polygons in that of their first polyhedra, whose boundary gives their direction. Signatures are 0 in polygons,
+/// polyhedra and prisms over these; in other cells bit v is corner v of the cell, in hexahedra and quadrilaterals the
 /// corner at v >> j & 1 along their j-th axis. Segments go from the point with the smaller number to the other one.
-/// FacetPlace::axes is 0 and `number` counts the facets of a cell.
+/// FacetPlace::axes is 0, `base` of facets of lower dimensions is the cell of the first facet that they bound, and
+/// `number` counts the facets of a cell. Caps are in the faces of cells at the border of the complex; they come last,
+/// and `number` counts those of a face. Facets that bound only caps are caps, too.
 ///
-/// Errors: those of `extract`; InvalidArgument for `close`; TooLarge also for 2^32 incidences. O(C + P + S log S) time
-/// for S facets; what is not `extract` runs on one thread. The result is the same for any number of threads. Memory
-/// besides the result: as `extract`, the compact contour, and 12 bytes for each side of a polygon.
+/// Errors: those of `extract`; TooLarge also for 2^32 incidences. O(C + P + S log S) time for S facets; what is not
+/// `extract` runs on one thread. The result is the same for any number of threads. Memory besides the result: as
+/// `extract`, the compact contour, and 12 bytes for each side of a polygon; in 4D 40 for each polygon and 8 for each of
+/// its sides besides.
 template <Coordinate Real = float, int N>
-requires DimensionBetween<N, 2, 3>
+requires DimensionBetween<N, 2, 4>
 [[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,
                                                      const ExtractOptions& options = {});
 

@@ -35,9 +35,14 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
                  options.ambiguity == Ambiguity::high ? tile::Alternative::high : tile::Alternative::low) {
   const bool descends = options.direction == GradientDirection::descent;
   constexpr std::size_t kStep = std::size_t{1} << 14;  // facets between two reports
+  std::vector<Index> first_cell{0};                    // by group, then of the polytopes
+  for (const CellGroup& group : cells.groups)
+    first_cell.push_back(first_cell.back() + static_cast<Index>(group.size()));
   for (std::size_t i = 0; i < border.size(); ++i) {
     const auto& [g, cell, number] = border[i];
     if (i % kStep == 0) tell(progress, static_cast<double>(i) / static_cast<double>(border.size()));
+    is_new_facet_ = true;
+    current_ = {first_cell[g] + cell, 0, 0};
     if (g == cells.groups.size()) {
       const std::span<const Index> points = cells.polytopes.points_of(cell);
       if (std::any_of(points.begin(), points.end(), [&](Index p) { return std::isnan(values[p]); })) continue;
@@ -66,9 +71,10 @@ ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, con
       corners_.push_back(facet.points[v]);
     }
     if (facet.high == 0) continue;
+    unsigned signature = 0;
+    for (unsigned v = 0; v < group.corner_count; ++v) signature |= (values[corners[v]] >= isovalue ? 1u : 0u) << v;
+    current_.signature = static_cast<std::uint16_t>(signature);
     if (const BuiltCells* const built = numbers.cases(g).built()) {
-      unsigned signature = 0;
-      for (unsigned v = 0; v < group.corner_count; ++v) signature |= (values[corners[v]] >= isovalue ? 1u : 0u) << v;
       facet.contour = built->in_facet(number, built->key(signature, corners, values), corners);
     }
     add_facet(facet);
@@ -528,6 +534,8 @@ template <int N>
 void ComplexCaps<N>::add_simplex(Simplex simplex, bool flip) {
   if (flip) std::swap(simplex[N - 2], simplex[N - 1]);
   simplices_.push_back(simplex);
+  if (std::exchange(is_new_facet_, false)) by_facet_.push_back(current_);
+  by_facet_.back().end = static_cast<std::uint32_t>(simplices_.size());
 }
 
 template <int N>

@@ -67,6 +67,8 @@ class ComplexCaps {
   };
   [[nodiscard]] const std::vector<Between>& between() const noexcept { return between_; }
   [[nodiscard]] const std::vector<Simplex>& simplices() const noexcept { return simplices_; }
+  /// The cells of the border facets that have simplices, in their order: a cell again for each of its facets.
+  [[nodiscard]] const std::vector<CellSimplices>& by_facet() const noexcept { return by_facet_; }
   /// The number of a vertex.
   [[nodiscard]] Index number(CapVertex vertex) const noexcept;
 
@@ -141,6 +143,9 @@ class ComplexCaps {
   std::vector<std::uint64_t> first_point_{0};
   std::vector<Between> between_;
   std::vector<Simplex> simplices_;
+  std::vector<CellSimplices> by_facet_;
+  CellSimplices current_{};  ///< of the current facet
+  bool is_new_facet_ = true;
 };
 
 /// The caps of a contour, if they are requested. `border`: the facets to close; null: all of the complex. Errors:

@@ -165,7 +165,7 @@ std::vector<CellSimplices> ContourNumbers::simplices_by_cell(const CellGroups& c
     std::uint32_t from = 0;
     for (const PolytopeBlock::Piece& piece : block.pieces) {
       const std::uint32_t size = piece.end - std::exchange(from, piece.end);
-      end += size == 2 ? 1 : (piece.is_coned ? size : size - 2);
+      end += cells.polytopes.dim() == 4 ? size : size == 2 ? 1 : (piece.is_coned ? size : size - 2);
       const Index cell = count + piece.cell;
       if (all.empty() || all.back().cell != cell) all.push_back({cell, 0, end});
       all.back().end = end;

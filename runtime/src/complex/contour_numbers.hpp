@@ -80,7 +80,7 @@ class ContourNumbers {
   template <class Visit>
   void for_each_cell(std::size_t block, const Visit& visit) const;
 
-  /// The simplices of the active cells, ascending, in 2D and 3D.
+  /// The simplices of the active cells, ascending.
   [[nodiscard]] std::vector<CellSimplices> simplices_by_cell(const CellGroups& cells) const;
 
   /// The numbers of vertices on edges of cells with missing corners, ascending: the contour may touch itself there.

@@ -577,6 +577,7 @@ Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const
   }
   if (around.simplices != nullptr)
     *around.simplices = numbered.numbers().simplices_by_cell(ComplexAccess::cells(complex));
+  if (around.caps != nullptr && numbered.caps() != nullptr) *around.caps = numbered.caps()->by_facet();
   Stopwatch watch;
   result.contour =
       contour_of<Real>(complex, numbered, std::move(touching), isovalue, options, around, part_of(progress, 0.6, 1.0));

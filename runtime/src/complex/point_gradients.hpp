@@ -39,6 +39,8 @@ struct Surroundings {
   VertexKeys* keys = nullptr;
   /// Receives the active cells in the order of their simplices; null: not needed.
   std::vector<CellSimplices>* simplices = nullptr;
+  /// Receives the cells of the caps in the order of their simplices (ComplexCaps::by_facet); null: not needed.
+  std::vector<CellSimplices>* caps = nullptr;
 };
 
 /// As `extract_with_stats` of a complex with surroundings.

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/monotone_paths.hpp"
 #include "cut/slice_piece.hpp"
 #include "tegl/contour.hpp"
 
@@ -76,17 +77,15 @@ constexpr auto kEdgesOfCut = [] {
 }();
 
 /// The cut of a 4-simplex between `high_count` vertices and the others is a tetrahedron or a prism over a triangle. The
-/// prism is a product of two simplices, divided by its monotone paths: from the first pair of both to the last, one
-/// step at a time. The division of a face is that of the face's own product, so neighbours agree (H. Freudenthal,
-/// Simplizialzerlegungen von beschränkter Flachheit, 1942).
+/// prism is a product of two simplices, divided by its monotone paths, so neighbours agree.
 struct TetrahedraOfCut {
   /// Pairs (above, below); those above are 0 to high_count - 1.
-  std::array<std::array<std::pair<std::uint8_t, std::uint8_t>, 4>, 3> points{};
+  std::array<std::array<VertexPair, 4>, 3> points{};
   int count = 0;
 };
 
 /// The determinant of f_1, f_2, f_3 and the upward direction in the frame of the simplex, up to a positive factor.
-constexpr int frame_of_cut(const std::array<std::pair<std::uint8_t, std::uint8_t>, 4>& points, int high_count) {
+constexpr int frame_of_cut(const std::array<VertexPair, 4>& points, int high_count) {
   std::array<std::array<int, 5>, 4> rows{};
   for (int i = 1; i < 4; ++i) {
     ++rows[i - 1][points[i].first], ++rows[i - 1][points[i].second];
@@ -109,18 +108,12 @@ constexpr int frame_of_cut(const std::array<std::pair<std::uint8_t, std::uint8_t
 
 constexpr TetrahedraOfCut tetrahedra_of_cut(int high_count) {
   TetrahedraOfCut result;
-  for (unsigned steps = 0; steps < 8; ++steps) {  // bit i: the i-th step is in the vertices above
-    if (std::popcount(steps) != high_count - 1) continue;
+  for_each_monotone_path<4>(high_count, [&](const std::array<VertexPair, 4>& path) {
     auto& points = result.points[result.count++];
-    std::uint8_t above = 0;
-    auto below = static_cast<std::uint8_t>(high_count);
-    points[0] = {above, below};
-    for (int i = 0; i < 3; ++i) {
-      ((steps >> i) & 1u) != 0 ? ++above : ++below;
-      points[i + 1] = {above, below};
-    }
+    points = path;
+    for (VertexPair& pair : points) pair.second = static_cast<std::uint8_t>(pair.second + high_count);
     if (frame_of_cut(points, high_count) > 0) std::swap(points[2], points[3]);
-  }
+  });
   return result;
 }
 inline constexpr std::array<TetrahedraOfCut, 5> kTetrahedraOfCut = {

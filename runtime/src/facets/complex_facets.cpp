@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Facets of complexes of cells: the simplices of the compact contour in a cell are joined to polygons.
+// Facets of complexes of cells: the simplices of the compact contour in a cell are joined to polygons and polyhedra.
 #include <algorithm>
 #include <array>
+#include <bitset>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -11,8 +13,11 @@
 #include <fmt/format.h>
 
 #include "base/disjoint_sets.hpp"
+#include "complex/border_facets.hpp"
 #include "complex/contour_numbers.hpp"
 #include "complex/point_gradients.hpp"
+#include "facets/split_facets.hpp"
+#include "polytope/prism_facets.hpp"
 #include "tegl/error.hpp"
 #include "tegl/facet_hierarchy.hpp"
 
@@ -29,9 +34,10 @@ class CellPolygons {
  public:
   /// Calls visit(ring) for each polygon of consecutive triangles, in the order of their first triangles. Triangles that
   /// are connected and form a disc are one polygon, without the vertices inside; others are polygons by themselves.
-  template <class Visit>
-  void for_each(std::span<const std::array<Index, 3>> triangles, const Visit& visit) {
-    find_parts(triangles);
+  /// `ends(a, b)`: whether polygons end at the side from vertex a to b.
+  template <class Ends, class Visit>
+  void for_each(std::span<const std::array<Index, 3>> triangles, const Ends& ends, const Visit& visit) {
+    find_parts(triangles, ends);
     std::vector<bool> is_done(triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       if (is_done[i]) continue;
@@ -50,7 +56,8 @@ class CellPolygons {
   }
 
  private:
-  void find_parts(std::span<const std::array<Index, 3>> triangles) {
+  template <class Ends>
+  void find_parts(std::span<const std::array<Index, 3>> triangles, const Ends& ends) {
     std::vector<std::pair<Side, Index>> sides;  // without direction
     for (std::size_t i = 0; i < triangles.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
@@ -60,7 +67,8 @@ class CellPolygons {
     std::sort(sides.begin(), sides.end());
     parts_.reset(triangles.size());
     for (std::size_t i = 1; i < sides.size(); ++i)
-      if (sides[i].first == sides[i - 1].first) parts_.join(sides[i].second, sides[i - 1].second);
+      if (sides[i].first == sides[i - 1].first && !ends(sides[i].first[0], sides[i].first[1]))
+        parts_.join(sides[i].second, sides[i - 1].second);
   }
 
   /// The boundary of a part, from the end of its first triangle's first side; false if the part is no disc.
@@ -95,6 +103,132 @@ class CellPolygons {
   std::vector<Index> ring_;
 };
 
+/// The 3D facets of a 4D cell, and which of them have a vertex of the contour.
+class FacetsOfCell {
+ public:
+  using Facets = std::bitset<kPolytopeCorners * 2>;  ///< a polyhedron of C corners has up to 2 C - 4 faces
+
+  /// The arguments must outlive this object.
+  FacetsOfCell(const CellGroups& cells, const VertexKeys& keys) : cells_(cells), keys_(keys) {}
+
+  /// Of a cell, numbered by group, then of the polytopes.
+  void set_cell(Index cell) {
+    std::size_t g = 0;
+    while (g < cells_.groups.size() && cell >= cells_.groups[g].size())
+      cell -= static_cast<Index>(cells_.groups[g++].size());
+    if (g < cells_.groups.size()) {
+      corners_ = {cells_.groups[g].cell(cell), cells_.groups[g].corner_count};
+      of_corner_.assign(corners_.size(), {});
+      const auto facets = facets_of(cells_.groups[g].shape);
+      for (std::size_t f = 0; f < facets.size(); ++f)
+        for (unsigned i = 0; i < facets[f].corner_count; ++i) of_corner_[facets[f].corners[i]].set(f);
+      return;
+    }
+    corners_ = cells_.polytopes.points_of(cell);
+    of_corner_.assign(corners_.size(), {});
+    const std::vector<PrismFacet> facets = facets_of_prism(cells_.polytopes.shape(cell));
+    for (std::size_t f = 0; f < facets.size(); ++f)
+      for (const std::uint8_t v : facets[f].corners) of_corner_[v].set(f);
+  }
+  /// The facets that have a vertex on an edge or at a corner of the cell. None for other vertices: they are inside of a
+  /// facet or of the cell.
+  [[nodiscard]] Facets at(Index vertex) const noexcept {
+    if (vertex < keys_.edges.size()) return at_point(keys_.edges[vertex][0]) & at_point(keys_.edges[vertex][1]);
+    const std::size_t corner = vertex - keys_.before_caps;  // of caps
+    if (vertex >= keys_.before_caps && corner < keys_.corners.size()) return at_point(keys_.corners[corner]);
+    return {};
+  }
+
+ private:
+  [[nodiscard]] Facets at_point(Index point) const noexcept {
+    return of_corner_[static_cast<std::size_t>(std::find(corners_.begin(), corners_.end(), point) - corners_.begin())];
+  }
+
+  const CellGroups& cells_;
+  const VertexKeys& keys_;
+  std::span<const Index> corners_;
+  std::vector<Facets> of_corner_;
+};
+
+/// The polyhedra of the tetrahedra in a cell, by the polygons around them.
+class CellPolyhedra {
+ public:
+  /// Calls visit(ring, is_first) for the polygons of each polyhedron of consecutive tetrahedra, in the order of their
+  /// first tetrahedra. Rings face outwards of the polyhedron. A polygon is in one 3D facet of the cell: it ends at
+  /// segments in two facets. Caps also have polygons in 2D faces, which are in two facets.
+  template <class Visit>
+  void for_each(std::span<const std::array<Index, 4>> tetrahedra, const FacetsOfCell& cell, const Visit& visit) {
+    find_border(tetrahedra);
+    std::vector<bool> is_done(tetrahedra.size());
+    for (std::size_t i = 0; i < tetrahedra.size(); ++i) {
+      const Index part = parts_.find(static_cast<Index>(i));
+      if (is_done[part]) continue;
+      is_done[part] = true;
+      bool is_first = true;
+      const auto visit_next = [&](std::span<const Index> ring) { visit(ring, std::exchange(is_first, false)); };
+      find_faces(part, cell);
+      for (std::size_t f = 0; f < faces_.size(); ++f)
+        polygons_.for_each(
+            faces_[f].second, [&](Index a, Index b) { return f == 0 && (cell.at(a) & cell.at(b)).count() >= 2; },
+            visit_next);
+    }
+  }
+
+ private:
+  using Triangle = std::array<Index, 3>;
+
+  /// The border of a part: the triangles inside of 3D facets, then those in each 2D face.
+  void find_faces(Index part, const FacetsOfCell& cell) {
+    faces_.assign(1, {});
+    for (const auto& [triangle, of] : border_) {
+      if (parts_.find(of) != part) continue;
+      FacetsOfCell::Facets face = cell.at(triangle[0]) & cell.at(triangle[1]) & cell.at(triangle[2]);
+      if (face.count() < 2) face.reset();
+      auto found = std::find_if(faces_.begin(), faces_.end(), [&](const auto& each) { return each.first == face; });
+      if (found == faces_.end()) found = faces_.insert(found, {face, {}});
+      found->second.push_back(triangle);
+    }
+  }
+
+  /// Joins tetrahedra with a common triangle; the others are the border, in the order of the tetrahedra.
+  void find_border(std::span<const std::array<Index, 4>> tetrahedra) {
+    struct Use {
+      Triangle sorted;
+      std::uint32_t number;  ///< 4 tetrahedron + the vertex opposite to the triangle
+    };
+    std::vector<Use> uses;
+    for (std::uint32_t i = 0; i < 4 * tetrahedra.size(); ++i) {
+      Use& use = uses.emplace_back(Use{side(tetrahedra, i), i});
+      std::sort(use.sorted.begin(), use.sorted.end());
+    }
+    std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) {
+      return a.sorted != b.sorted ? a.sorted < b.sorted : a.number < b.number;
+    });
+    parts_.reset(tetrahedra.size());
+    std::vector<std::uint32_t> single;
+    for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+      for (j = i + 1; j < uses.size() && uses[j].sorted == uses[i].sorted; ++j)
+        parts_.join(uses[i].number / 4, uses[j].number / 4);
+      if (j == i + 1) single.push_back(uses[i].number);
+    }
+    std::sort(single.begin(), single.end());
+    border_.clear();
+    for (const std::uint32_t number : single) border_.push_back({side(tetrahedra, number), number / 4});
+  }
+  /// The triangle opposite to a vertex, oriented as in the boundary of the tetrahedron.
+  static Triangle side(std::span<const std::array<Index, 4>> tetrahedra, std::uint32_t number) {
+    const auto& t = tetrahedra[number / 4];
+    constexpr std::uint8_t kSides[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    const auto& of = kSides[number % 4];
+    return {t[of[0]], t[of[1]], t[of[2]]};
+  }
+
+  DisjointSets parts_;
+  std::vector<std::pair<Triangle, Index>> border_;
+  std::vector<std::pair<FacetsOfCell::Facets, std::vector<Triangle>>> faces_;
+  CellPolygons polygons_;
+};
+
 /// Sets the points of a hierarchy, and numbers the vertices that have one. `used`: by vertex of the contour.
 template <int N, class Real>
 std::vector<Index> take_points(const Contour<N, Real>& contour, const std::vector<bool>& used,
@@ -120,33 +254,40 @@ void require_incidences(std::size_t count) {
                 fmt::format("{} incidences of facets; expected at most {}", count, std::numeric_limits<Index>::max()));
 }
 
-/// The facets of dimension N - 1 of a contour, as rings of its vertices, one after the other.
+/// Segments of 2D contours, or polygons, as rings of vertices, one after the other.
 struct Rings {
   std::vector<FacetPlace> places;
   std::vector<std::size_t> ends;
   std::vector<Index> vertices;
+
+  void add(std::span<const Index> ring, const FacetPlace& place) {
+    vertices.insert(vertices.end(), ring.begin(), ring.end());
+    ends.push_back(vertices.size());
+    places.push_back(place);
+  }
+  [[nodiscard]] std::span<const Index> operator[](std::size_t i) const noexcept {
+    const std::size_t from = i == 0 ? 0 : ends[i - 1];
+    return std::span(vertices).subspan(from, ends[i] - from);
+  }
 };
 
+/// Adds the facets of dimension N - 1 in cells to `rings`. `from`: the first simplex of the cells.
 template <int N, class Real>
-Rings rings_of(const Contour<N, Real>& contour, const std::vector<CellSimplices>& cells) {
-  Rings rings;
+void add_rings(const Contour<N, Real>& contour, const std::vector<CellSimplices>& cells, std::size_t from,
+               bool are_caps, Rings& rings) {
   CellPolygons polygons;
-  std::size_t from = 0;
+  std::size_t at = from;
   for (const auto& [cell, signature, end] : cells) {
     std::uint8_t number = 0;
-    const auto add = [&](std::span<const Index> ring) {
-      rings.vertices.insert(rings.vertices.end(), ring.begin(), ring.end());
-      rings.ends.push_back(rings.vertices.size());
-      rings.places.push_back({cell, signature, 0, number++, false});
-    };
-    const std::span simplices(contour.simplices.data() + from, end - from);
-    from = end;
+    const auto add = [&](std::span<const Index> ring) { rings.add(ring, {cell, signature, 0, number++, are_caps}); };
+    const std::span simplices(contour.simplices.data() + at, from + end - at);
+    at = from + end;
     if constexpr (N == 2)
       for (const auto& segment : simplices) add(segment);
     else
-      polygons.for_each(simplices, add);
+      polygons.for_each(
+          simplices, [](Index, Index) { return false; }, add);
   }
-  return rings;
 }
 
 template <class Level>
@@ -160,17 +301,20 @@ void set_places(const Rings& rings, Level& level) {
   level.down_signs.resize(rings.vertices.size());
 }
 
-/// Gives facets of the next lower dimension the cell of their first facet.
+/// Gives facets of the next lower dimension the cell of their first facet. They are caps if all their facets are.
 template <class Level>
 void set_first_cells(const Level& of, Level& below) {
+  for (FacetPlace& place : below.places) place.is_cap = true;
   for (std::size_t f = of.places.size(); f-- > 0;)
-    for (Index e = of.down_first[f]; e < of.down_first[f + 1]; ++e)
-      below.places[of.down[e]] = {of.places[f].base, of.places[f].signature, 0, 0, false};
+    for (Index e = of.down_first[f]; e < of.down_first[f + 1]; ++e) {
+      FacetPlace& place = below.places[of.down[e]];
+      place = {of.places[f].base, of.places[f].signature, 0, 0, place.is_cap && of.places[f].is_cap};
+    }
 }
 
 /// Segments from the sides of polygons, and the polygons' boundaries. `number`: of points, by vertex.
-template <class Real>
-void add_segments(const Rings& rings, const std::vector<Index>& number, FacetHierarchy<3, Real>& facets) {
+template <int N, class Real>
+void add_segments(const Rings& rings, const std::vector<Index>& number, FacetHierarchy<N, Real>& facets) {
   std::vector<Side> sides;
   const auto for_each_side = [&](const auto& visit) {
     std::size_t from = 0;
@@ -204,41 +348,182 @@ void add_segments(const Rings& rings, const std::vector<Index>& number, FacetHie
   set_first_cells(polygons, segments);
 }
 
-}  // namespace
+/// A polygon in the boundary of a polyhedron.
+struct PolygonUse {
+  Index polygon;
+  std::int8_t sign;
+};
 
-}  // namespace detail
+/// The polyhedra of a 4D contour, and their polygons, each once.
+class Polyhedra {
+ public:
+  /// `active`, `caps`: the cells of the simplices, and of those of the caps.
+  template <class Real>
+  Polyhedra(const Contour<4, Real>& contour, const std::vector<CellSimplices>& active,
+            const std::vector<CellSimplices>& caps, FacetsOfCell& facets) {
+    add(contour, active, 0, false, facets);
+    add(contour, caps, active.empty() ? 0 : active.back().end, true, facets);
+    number_polygons();
+  }
 
-template <Coordinate Real, int N>
-requires DimensionBetween<N, 2, 3> FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,
-                                                                          const ExtractOptions& options) {
-  if (options.close)
-    throw Error(ErrorCode::InvalidArgument,
-                "close of facets in cells of a mesh; expected a contour that is not closed");
-  ExtractOptions of_contour = options;
-  of_contour.triangulation = Triangulation::compact;
-  std::vector<detail::CellSimplices> cells;
-  detail::Surroundings<N> around;
-  around.simplices = &cells;
-  const Contour<N, Real> contour = detail::extract_in<Real, N>(complex, isovalue, of_contour, around).contour;
-  const detail::Rings rings = detail::rings_of(contour, cells);
-  detail::require_incidences(rings.vertices.size());
-  FacetHierarchy<N, Real> facets;
-  facets.direction = contour.direction;
-  facets.cells = detail::ComplexAccess::cells(complex).cell_count;
-  std::vector<bool> used(contour.vertices.size());
+  std::vector<FacetPlace> places;
+  std::vector<std::size_t> ends;  ///< by polyhedron: in `uses`
+  std::vector<PolygonUse> uses;
+  Rings polygons;  ///< in the order and direction of their first uses
+
+ private:
+  /// Adds the polyhedra in cells. `from`: the first simplex of the cells.
+  template <class Real>
+  void add(const Contour<4, Real>& contour, const std::vector<CellSimplices>& cells, std::size_t from, bool are_caps,
+           FacetsOfCell& facets) {
+    CellPolyhedra in_cell;
+    std::size_t at = from;
+    for (const auto& [cell, signature, end] : cells) {
+      facets.set_cell(cell);
+      std::uint8_t number = 0;
+      in_cell.for_each(std::span(contour.simplices.data() + at, from + end - at), facets,
+                       [&](std::span<const Index> ring, bool is_first) {
+                         if (is_first) {
+                           places.push_back({cell, signature, 0, number++, are_caps});
+                           ends.push_back(all_.ends.size());
+                         }
+                         all_.add(ring, {});
+                         ends.back() = all_.ends.size();
+                       });
+      at = from + end;
+    }
+  }
+
+  /// Finds the rings that two polyhedra have in opposite directions.
+  void number_polygons() {
+    const std::size_t count = all_.ends.size();
+    Rings known;  // from the smallest vertex towards its smaller neighbour
+    std::vector<std::int8_t> signs(count);
+    std::vector<Index> order(count);
+    std::vector<Index> ring;
+    for (std::size_t i = 0; i < count; ++i) {
+      ring.assign(all_[i].begin(), all_[i].end());
+      std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+      signs[i] = ring[1] < ring.back() ? std::int8_t{1} : std::int8_t{-1};
+      if (signs[i] < 0) std::reverse(ring.begin() + 1, ring.end());
+      known.add(ring, {});
+      order[i] = static_cast<Index>(i);
+    }
+    const auto compared = [&](Index a, Index b) {
+      return std::lexicographical_compare_three_way(known[a].begin(), known[a].end(), known[b].begin(), known[b].end());
+    };
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+      const auto result = compared(a, b);
+      return result != 0 ? result < 0 : a < b;
+    });
+    std::vector<Index> first(count);  // the first use of the same polygon
+    for (std::size_t i = 0; i < count; ++i)
+      first[order[i]] = i > 0 && compared(order[i - 1], order[i]) == 0 ? first[order[i - 1]] : order[i];
+    std::vector<Index> numbers(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (first[i] == i) {
+        numbers[i] = static_cast<Index>(polygons.ends.size());
+        polygons.add(all_[i], {});
+      }
+      uses.push_back({numbers[first[i]], static_cast<std::int8_t>(signs[i] * signs[first[i]])});
+    }
+  }
+
+  Rings all_;  ///< of all polyhedra
+};
+
+/// Adds polyhedra with their boundaries.
+template <class Real>
+void add_polyhedra(const Polyhedra& from, FacetHierarchy<4, Real>& facets) {
+  auto& level = facets.levels[3];
+  level.places.resize(from.places.size());
+  std::copy(from.places.begin(), from.places.end(), level.places.begin());
+  level.down_first.resize(from.ends.size() + 1);
+  level.down_first[0] = 0;
+  for (std::size_t f = 0; f < from.ends.size(); ++f) level.down_first[f + 1] = static_cast<Index>(from.ends[f]);
+  level.down.resize(from.uses.size());
+  level.down_signs.resize(from.uses.size());
+  for (std::size_t i = 0; i < from.uses.size(); ++i) {
+    level.down[i] = from.uses[i].polygon;
+    level.down_signs[i] = from.uses[i].sign;
+  }
+}
+
+/// The vertices that have a point.
+std::vector<bool> vertices_of(const Rings& rings, std::size_t count) {
+  std::vector<bool> used(count);
   for (const Index v : rings.vertices) used[v] = true;
-  const std::vector<Index> number = detail::take_points(contour, used, facets);
+  return used;
+}
+
+/// Facets of 2D and 3D contours.
+template <class Real, int N>
+FacetHierarchy<N, Real> facets_of_rings(const Complex<N>& complex, double isovalue, const ExtractOptions& options) {
+  std::vector<CellSimplices> cells, caps;
+  Surroundings<N> around;
+  around.simplices = &cells;
+  around.caps = &caps;
+  const Contour<N, Real> contour = extract_in<Real, N>(complex, isovalue, options, around).contour;
+  Rings rings;
+  add_rings(contour, cells, 0, false, rings);
+  add_rings(contour, caps, cells.empty() ? 0 : cells.back().end, true, rings);
+  require_incidences(rings.vertices.size());
+  FacetHierarchy<N, Real> facets;
+  const std::vector<Index> number = take_points(contour, vertices_of(rings, contour.vertices.size()), facets);
   auto& top = facets.levels[N - 1];
-  detail::set_places(rings, top);
+  set_places(rings, top);
   if constexpr (N == 2) {
     for (std::size_t i = 0; i < rings.vertices.size(); ++i) {
       top.down[i] = number[rings.vertices[i]];
       top.down_signs[i] = i % 2 == 0 ? std::int8_t{-1} : std::int8_t{1};
     }
   } else {
-    detail::add_segments(rings, number, facets);
+    add_segments(rings, number, facets);
   }
+  return facets;
+}
+
+/// Facets of 4D contours.
+template <class Real>
+FacetHierarchy<4, Real> facets_in_4d(const Complex<4>& complex, double isovalue, const ExtractOptions& options) {
+  std::vector<CellSimplices> cells, caps;
+  VertexKeys keys;
+  Surroundings<4> around;
+  around.simplices = &cells;
+  around.caps = &caps;
+  around.keys = &keys;  // so the contour is not separated beside missing values: here facets are
+  const Contour<4, Real> contour = extract_in<Real, 4>(complex, isovalue, options, around).contour;
+  FacetsOfCell in_cell(ComplexAccess::cells(complex), keys);
+  const Polyhedra polyhedra(contour, cells, caps, in_cell);
+  require_incidences(std::max(polyhedra.uses.size(), polyhedra.polygons.vertices.size()));
+  FacetHierarchy<4, Real> facets;
+  const auto number = take_points(contour, vertices_of(polyhedra.polygons, contour.vertices.size()), facets);
+  add_polyhedra(polyhedra, facets);
+  set_places(polyhedra.polygons, facets.levels[2]);
+  set_first_cells(facets.levels[3], facets.levels[2]);
+  add_segments(polyhedra.polygons, number, facets);
+  return facets;
+}
+
+}  // namespace
+
+}  // namespace detail
+
+template <Coordinate Real, int N>
+requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,
+                                                                          const ExtractOptions& options) {
+  ExtractOptions of_contour = options;
+  of_contour.triangulation = Triangulation::compact;
+  FacetHierarchy<N, Real> facets;
+  if constexpr (N == 4)
+    facets = detail::facets_in_4d<Real>(complex, isovalue, of_contour);
+  else
+    facets = detail::facets_of_rings<Real>(complex, isovalue, of_contour);
+  facets.direction = options.direction;
+  facets.cells = detail::ComplexAccess::cells(complex).cell_count;
   detail::set_first_cells(facets.levels[1], facets.levels[0]);
+  if (N == 4 && std::any_of(complex.values().begin(), complex.values().end(), [](double v) { return std::isnan(v); }))
+    detail::separate_facets(facets, [](const FacetPlace&) { return true; });
   return facets;
 }
 
@@ -248,6 +533,8 @@ TEGL_INSTANTIATE_FACETS(2, float)
 TEGL_INSTANTIATE_FACETS(2, double)
 TEGL_INSTANTIATE_FACETS(3, float)
 TEGL_INSTANTIATE_FACETS(3, double)
+TEGL_INSTANTIATE_FACETS(4, float)
+TEGL_INSTANTIATE_FACETS(4, double)
 #undef TEGL_INSTANTIATE_FACETS
 
 }  // namespace tegl

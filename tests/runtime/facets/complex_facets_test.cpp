@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <random>
@@ -14,7 +15,6 @@
 
 #include "complex/complex_cases.hpp"
 #include "complex/polyhedral_cases.hpp"
-#include "errors.hpp"
 #include "invariants.hpp"
 #include "meshes.hpp"
 #include "tegl/check.hpp"
@@ -35,7 +35,8 @@ std::vector<double> values_at_random(const MeshData<N>& mesh, std::uint64_t seed
   return values;
 }
 
-/// The (N-1)-facets as rings of places in units of 1e-6, each from its smallest place, in an order of their own.
+/// The (N-1)-facets as rings of places in units of 1e-6, each from its smallest place, in an order of their own. Of
+/// polyhedra, the sorted places.
 template <int N>
 std::vector<std::vector<std::array<std::int64_t, N>>> rings_of(const FacetHierarchy<N, double>& facets) {
   std::vector<std::vector<std::array<std::int64_t, N>>> rings;
@@ -46,6 +47,7 @@ std::vector<std::vector<std::array<std::int64_t, N>>> rings_of(const FacetHierar
       for (int a = 0; a < N; ++a) place[a] = std::llround(1e6 * facets.vertices[p][a]);
     }
     if (N == 3) std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+    if (N == 4) std::sort(ring.begin(), ring.end());
   }
   std::sort(rings.begin(), rings.end());
   return rings;
@@ -56,17 +58,27 @@ void expect_facets_of_image(const MeshData<N>& mesh, const std::vector<double>& 
   Complex<N> complex = mesh.complex();
   complex.set_values(values);
   const OwnedImage<double, N> image = image_of(mesh, values);
-  for (const Ambiguity rule : kAllRules) {
-    SCOPED_TRACE(testing::Message() << N << "D, rule " << static_cast<int>(rule));
-    ExtractOptions options;
-    options.ambiguity = rule;
-    const auto of_image = extract_facets<double>(image.view(), 0.5, options);
-    const auto of_mesh = extract_facets<double>(complex, 0.5, options);
-    for (int k = 0; k < N; ++k) EXPECT_EQ(of_image.count(k), of_mesh.count(k)) << k;
-    EXPECT_GT(of_mesh.count(N - 1), 100u);
-    EXPECT_TRUE(rings_of<N>(of_image) == rings_of<N>(of_mesh));
-    EXPECT_EQ(check(of_image), check(of_mesh));
-  }
+  for (const Ambiguity rule : kAllRules)
+    for (const bool close : {false, true}) {
+      SCOPED_TRACE(testing::Message() << N << "D, rule " << static_cast<int>(rule) << (close ? ", closed" : ""));
+      ExtractOptions options;
+      options.ambiguity = rule;
+      options.close = close;
+      const auto of_image = extract_facets<double>(image.view(), 0.5, options);
+      const auto of_mesh = extract_facets<double>(complex, 0.5, options);
+      for (int k = 0; k < N; ++k) {
+        EXPECT_EQ(of_image.count(k), of_mesh.count(k)) << k;
+        const auto caps = [k](const auto& facets) {
+          const auto& places = facets.levels[k].places;
+          return std::count_if(places.begin(), places.end(), [](const FacetPlace& place) { return place.is_cap; });
+        };
+        EXPECT_EQ(caps(of_image), caps(of_mesh)) << k;
+        EXPECT_EQ(close, caps(of_mesh) > 0) << k;
+      }
+      EXPECT_GT(of_mesh.count(N - 1), 100u);
+      EXPECT_TRUE(rings_of<N>(of_image) == rings_of<N>(of_mesh));
+      EXPECT_EQ(check(of_image), check(of_mesh));
+    }
 }
 
 TEST(ComplexFacets, AGridsOwnCellsHaveTheImagesFacets) {
@@ -74,6 +86,8 @@ TEST(ComplexFacets, AGridsOwnCellsHaveTheImagesFacets) {
   expect_facets_of_image(squares, values_at_random(squares, 3));
   const MeshData<3> cubes = cube_mesh(grid_points<3>({9, 8, 7}), true);
   expect_facets_of_image(cubes, values_at_random(cubes, 4));
+  const MeshData<4> tesseracts = cube_mesh(grid_points<4>({5, 4, 5, 4}), true);
+  expect_facets_of_image(tesseracts, values_at_random(tesseracts, 5));
 }
 
 /// Consistent facets with the topology of the contour, on its vertices, whatever the number of threads.
@@ -87,7 +101,10 @@ void expect_facets_of_contour(const Complex<N>& complex, double isovalue, Extrac
   EXPECT_EQ(0u, report.branching + report.conflicts + report.open_boundaries);
   EXPECT_EQ(expected.components, report.components);
   EXPECT_EQ(expected.euler, report.euler);
-  EXPECT_EQ(expected.boundary_simplices, report.border);
+  if (N < 4)
+    EXPECT_EQ(expected.boundary_simplices, report.border);
+  else
+    EXPECT_EQ(expected.boundary_simplices > 0, report.border > 0);
   EXPECT_LE(facets.count(N - 1), contour.simplices.size());
   EXPECT_GT(facets.count(N - 1), 30u);
   ASSERT_EQ(facets.vertices.size(), facets.normals.size());
@@ -102,6 +119,7 @@ void expect_facets_of_contour(const Complex<N>& complex, double isovalue, Extrac
   unsigned number = 0;
   for (std::size_t f = 0; f < facets.count(N - 1); ++f) {
     const FacetPlace& place = facets.levels[N - 1].places[f];
+    if (place.is_cap) break;
     if (f > 0 && place.base == cell) {
       EXPECT_EQ(++number, place.number);
     } else {
@@ -131,6 +149,7 @@ TEST(ComplexFacets, HaveTheTopologyOfTheContourOnAllMeshes) {
           ExtractOptions options;
           options.ambiguity = rule;
           options.direction = direction;
+          options.close = direction == GradientDirection::ascent;
           expect_facets_of_contour(complex, 0.5, options);
         }
     }
@@ -138,6 +157,101 @@ TEST(ComplexFacets, HaveTheTopologyOfTheContourOnAllMeshes) {
   Complex<2> plane = triangles.complex();
   plane.set_values(values_at_random(triangles, 3));
   expect_facets_of_contour(plane, 0.5, {});
+  ExtractOptions closed;
+  closed.close = true;
+  expect_facets_of_contour(plane, 0.5, closed);
+}
+
+/// Noise at three times, also at the border.
+template <class Mesh>
+Complex<4> noise_in_time(const Mesh& mesh, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<double> values(3 * mesh.points.size());
+  for (double& value : values) value = static_cast<double>(random() >> 11) * 0x1p-53;
+  return in_time(mesh.complex(), std::vector<double>{0.0, 0.7, 1.0}, values);
+}
+
+TEST(ComplexFacets, In4dHaveTheTopologyOfTheContourOnAllMeshes) {
+  const auto points = grid_points<3>({5, 5, 5}, 0.15);
+  for (const MeshData<3>& mesh : {kuhn_mesh(points), wedge_mesh(points), pyramid_mesh(points), mixed_mesh(points, 5)}) {
+    const Complex<4> complex = noise_in_time(mesh, 20);
+    for (const Ambiguity rule : kAllRules) {
+      SCOPED_TRACE(testing::Message() << "rule " << static_cast<int>(rule));
+      ExtractOptions options;
+      options.ambiguity = rule;
+      options.direction = rule == Ambiguity::mean ? GradientDirection::ascent : GradientDirection::descent;
+      for (const bool close : {false, true}) {
+        options.close = close;
+        expect_facets_of_contour(complex, 0.5, options);
+      }
+    }
+  }
+  const MeshData<4> simplices = kuhn_mesh(grid_points<4>({5, 5, 5, 4}, 0.1));
+  Complex<4> complex = simplices.complex();
+  complex.set_values(values_at_random(simplices, 3));
+  expect_facets_of_contour(complex, 0.5, {});
+}
+
+TEST(ComplexFacets, OfLatticesIn4dAreThoseOfTheirCells) {
+  const OwnedImage<double, 4> image = OwnedImage<double, 4>(
+      Grid<4>::unit({6, 6, 6, 6}), Values<double>(values_at_random(cube_mesh(grid_points<4>({6, 6, 6, 6})), 6)));
+  for (const Lattice lattice : {Lattice::d4, Lattice::fcc_in_time}) {
+    const Complex<4> complex = lattice_complex(image.view(), lattice);
+    for (const Ambiguity rule : {Ambiguity::low, Ambiguity::mean}) {
+      SCOPED_TRACE(testing::Message() << name_of(lattice) << ", rule " << static_cast<int>(rule));
+      ExtractOptions options;
+      options.ambiguity = rule;
+      for (const bool close : {false, true}) {
+        options.close = close;
+        expect_facets_of_contour(complex, 0.5, options);
+      }
+    }
+  }
+}
+
+TEST(ComplexFacets, OfPolyhedraOverTimeHaveTheTopologyOfTheContour) {
+  for (const auto& [name, mesh] : space_fillings(3, 150, 6)) {
+    SCOPED_TRACE(name);
+    const Complex<4> complex = noise_in_time(mesh, 4);
+    for (const Ambiguity rule : {Ambiguity::low, Ambiguity::mean}) {
+      ExtractOptions options;
+      options.ambiguity = rule;
+      for (const bool close : {false, true}) {
+        options.close = close;
+        expect_facets_of_contour(complex, 0.5, options);
+      }
+    }
+  }
+}
+
+TEST(ComplexFacets, In4dBesideMissingValuesTheyAreAManifold) {
+  const MeshData<4> mesh = cube_mesh(grid_points<4>({5, 5, 4, 4}));
+  Complex<4> complex = mesh.complex();
+  complex.set_values(with_missing(values_at_random(mesh, 9)));
+  for (const Ambiguity rule : {Ambiguity::low, Ambiguity::mean}) {
+    ExtractOptions options;
+    options.ambiguity = rule;
+    options.close = rule == Ambiguity::mean;
+    const auto facets = extract_facets<double>(complex, 0.5, options);
+    const FacetReport report = check(facets);
+    EXPECT_EQ(0u, report.branching + report.conflicts + report.open_boundaries);
+    EXPECT_GT(report.border, 0u);
+    EXPECT_EQ(check(extract<double>(complex, 0.5, options)).components, report.components);
+  }
+}
+
+/// A polyhedron for each active 4-simplex, a tetrahedron or a prism.
+TEST(ComplexFacets, OfSimplicesIn4dHaveFourOrSixPoints) {
+  const MeshData<4> mesh = kuhn_mesh(grid_points<4>({4, 4, 4, 4}));
+  Complex<4> complex = mesh.complex();
+  complex.set_values(values_at_random(mesh, 2));
+  const auto facets = extract_facets<double>(complex, 0.5);
+  for (std::size_t f = 0; f < facets.count(3); ++f) {
+    const auto high = static_cast<std::size_t>(std::popcount(facets.levels[3].places[f].signature));
+    EXPECT_EQ(high * (5 - high), facets.points_of(3, f).size());
+    EXPECT_EQ(high == 1 || high == 4 ? 4u : 5u, facets.down(3, f).size());
+  }
+  EXPECT_EQ(extract_with_stats<double>(complex, 0.5).stats.active_tiles, facets.count(3));
 }
 
 TEST(ComplexFacets, OfPolyhedraAreOnePolygonForEachLoop) {
@@ -185,14 +299,6 @@ TEST(ComplexFacets, OfAPlaneAreOnePolygonForEachCell) {
     EXPECT_EQ(c, cells[active++]);
   }
   EXPECT_EQ(active, cells.size());
-}
-
-TEST(ComplexFacets, OfClosedContoursAreRefused) {
-  const MeshData<3> mesh = cube_mesh(grid_points<3>({3, 3, 3}));
-  ExtractOptions options;
-  options.close = true;
-  expect_error(ErrorCode::InvalidArgument, "close of facets",
-               [&] { (void)extract_facets<double>(mesh.complex(), 0.5, options); });
 }
 
 }  // namespace
