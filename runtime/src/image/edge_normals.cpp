@@ -130,29 +130,42 @@ HWY_INLINE Word normals(const NormalRow<N, Real, Calc>& row) {
   return left & ((Word{1} << row.count) - 1);
 }
 
+/// Reads an entry of a struct by itself. The struct may just have been written entry by entry; a vector load of several
+/// would wait for these stores.
+template <class T>
+HWY_INLINE T read_alone(const T& entry) {
+  const volatile T& alone = entry;
+  return alone;
+}
+
 template <int N>
 HWY_INLINE void row_gradients(const RowDifferences<N>& row) {
   const hn::ScalableTag<float> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   static_assert(kLanes + 2 <= kLeastRow);
-  const RowDifferences<N> from = row;  // local, because stores of vectors may change any memory
+  // local, because stores of vectors may change any memory
+  std::array<std::array<const float*, 2>, N> beside;
   std::array<std::array<hn::Vec<decltype(d)>, 2>, N> weights;
-  for (unsigned a = 0; a < N; ++a)
-    weights[a] = {hn::Set(d, static_cast<float>(from.weights[a].backward)),
-                  hn::Set(d, static_cast<float>(from.weights[a].forward))};
+  const float* const centre = read_alone(row.here);
+  for (unsigned a = 0; a < N; ++a) {
+    beside[a] = {a == 0 ? centre - 1 : read_alone(row.backward[a]), a == 0 ? centre + 1 : read_alone(row.forward[a])};
+    weights[a] = {hn::Set(d, static_cast<float>(read_alone(row.weights[a].backward))),
+                  hn::Set(d, static_cast<float>(read_alone(row.weights[a].forward)))};
+  }
+  float* const out = row.out;
+  const std::size_t pitch = row.pitch, last = row.samples - 1 - kLanes;
+  const std::ptrdiff_t next = row.next;
   const auto some = [&](std::size_t x) HWY_ATTR {
-    const auto here = hn::LoadU(d, from.here + x);
+    const auto here = hn::LoadU(d, centre + x);
     for (unsigned a = 0; a < N; ++a) {
-      const float* const backward = a == 0 ? from.here + x - 1 : from.backward[a] + x;
-      const float* const forward = a == 0 ? from.here + x + 1 : from.forward[a] + x;
+      const float* const forward = beside[a][1] + x;
       const auto ahead = hn::Mul(hn::Sub(hn::LoadU(d, forward), here), weights[a][1]);
-      const auto back = hn::Mul(hn::Sub(here, hn::LoadU(d, backward)), weights[a][0]);
-      hn::StoreU(hn::Add(ahead, back), d, from.out + a * from.pitch + x);
-      if (a != 0) hwy::Prefetch(forward + from.next);
+      const auto back = hn::Mul(hn::Sub(here, hn::LoadU(d, beside[a][0] + x)), weights[a][0]);
+      hn::StoreU(hn::Add(ahead, back), d, out + a * pitch + x);
+      if (a != 0) hwy::Prefetch(forward + next);
     }
   };
   // The first sample has no neighbour before it. From the second register on, stores are aligned.
-  const std::size_t last = from.samples - 1 - kLanes;
   some(1);
   for (std::size_t x = kLanes; x < last; x += kLanes) some(x);
   some(last);

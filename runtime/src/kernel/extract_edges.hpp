@@ -360,12 +360,14 @@ class EdgeWriter {
     Vertex* const to = all + static_cast<Index>(segment.vertex - vertices.first);
     const Vertex* const end = all + (run(segment.axis).end - vertices.data);
     const Vertex* const from = list.data() + segment.first;
-    // Copying a fixed number is faster than copying the exact one. Later segments overwrite the surplus, as the
-    // segments of a run come in vertex order.
-    if (segment.count <= kAtOnce && end - to >= static_cast<std::ptrdiff_t>(kAtOnce))
-      std::memcpy(to, from, kAtOnce * sizeof(Vertex));
-    else
+    // Copying fixed numbers is faster than copying the exact one. Later segments overwrite the surplus, as the segments
+    // of a run come in vertex order. Lists have kMargin more entries.
+    const std::size_t rounded = (segment.count + kAtOnce - 1) / kAtOnce * kAtOnce;
+    if (end - to < static_cast<std::ptrdiff_t>(rounded)) {
       std::copy_n(from, segment.count, to);
+      return;
+    }
+    for (std::size_t i = 0; i < rounded; i += kAtOnce) std::memcpy(to + i, from + i, kAtOnce * sizeof(Vertex));
   }
 
   const EdgeCrossings<N>& source_;

@@ -49,7 +49,15 @@ class RowNormals {
         positions_(pitch_),
         working_(N * pitch_ + kAlignment),
         left_(shape.words() + 1) {
-    for (Row& row : rows_) row.gradients.resize(N * pitch_ + kAlignment);
+    for (Row& row : rows_) {
+      row.gradients.resize(N * pitch_ + kAlignment);
+      RowDifferences<N>& around = row.around;
+      around.weights[0] = writer.steps(0).inside();
+      around.samples = shape.size(0);
+      around.next = N > 2 ? source.strides()[1] : 0;
+      around.out = aligned(row.gradients);
+      around.pitch = pitch_;
+    }
   }
 
   /// Writes the normals on edges along `axis`, all of the row with the number `row`; `start`: the row's first sample.
@@ -118,33 +126,32 @@ class RowNormals {
     found->used = ++now_;
     if (is_known) return *found;
     found->number = number;
-    found->around = around(start);
-    found->around.out = aligned(found->gradients);
+    surround(found->around, start);
     write_row_gradients<N>(found->around);
     return *found;
   }
 
-  [[nodiscard]] RowDifferences<N> around(const Index& start) const noexcept {
+  /// Sets the rows around a row. Entry by entry, because a struct that has been written in parts is slow to copy.
+  void surround(RowDifferences<N>& row, const Index& start) const noexcept {
     const auto& strides = source_.strides();
     std::ptrdiff_t offset = 0;
     for (int a = 1; a + 1 < N; ++a) offset += static_cast<std::ptrdiff_t>(start[a]) * strides[a];
     const auto in_layer = [&](std::size_t k) {
       return reinterpret_cast<const float*>(source_.layer_in_memory(k).first) + offset;
     };
-    RowDifferences<N> row{in_layer(start[N - 1]), {}, {}, {}, shape_.size(0), N > 2 ? strides[1] : 0, nullptr, pitch_};
-    row.weights[0] = writer_.steps(0).inside();
+    const float* const here = in_layer(start[N - 1]);
+    row.here = here;
     for (int a = 1; a < N; ++a) {
       const AxisSteps& steps = writer_.steps(a);
       const auto beside = [&](bool exists, bool ahead) {
-        if (!exists) return row.here;
+        if (!exists) return here;
         if (a == N - 1) return in_layer(ahead ? start[a] + 1 : start[a] - 1);
-        return ahead ? row.here + strides[a] : row.here - strides[a];
+        return ahead ? here + strides[a] : here - strides[a];
       };
       row.backward[a] = beside(steps.has_backward(start[a]), false);
       row.forward[a] = beside(steps.has_forward(start[a]), true);
       row.weights[a] = steps.at(start[a]);
     }
-    return row;
   }
 
   /// Normal on the edge from sample `at` of a row, at an end of the row or with an unusual gradient.
