@@ -116,8 +116,7 @@ class NormalWriter {
   /// As on_edge for differences, from the values around the edge: value(place), places as for kEdgeValues. Along the
   /// row, there must be no neighbours beyond its ends.
   template <class ValueAt>
-  [[nodiscard]] Vertex on_edge_among(const Index& index, int axis, double alpha,
-                                     const ValueAt& value) const noexcept {
+  [[nodiscard]] Vertex on_edge_among(const Index& index, int axis, double alpha, const ValueAt& value) const noexcept {
     const auto own = 4 * static_cast<unsigned>(axis);
     const double first = value(own + 2), second = value(own + 1);
     const auto along = [&](unsigned a) {
@@ -128,9 +127,7 @@ class NormalWriter {
     };
     // Through parameters, because an array that is written entry by entry cannot be read as a vector soon after.
     const auto normal_of = [&](auto... derivatives) { return normal({derivatives...}); };
-    return [&]<unsigned... A>(std::integer_sequence<unsigned, A...>) {
-      return normal_of(along(A)...);
-    }
+    return [&]<unsigned... A>(std::integer_sequence<unsigned, A...>) { return normal_of(along(A)...); }
     (std::make_integer_sequence<unsigned, N>());
   }
 
