@@ -3,8 +3,10 @@
 // Intersections of contours with edges. Highway's foreach_target compiles this file once per instruction set.
 // Multiplications and additions are not fused, so that all instruction sets give identical bytes.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "image/edge_alphas.hpp"
 #include "tegl/table_contract.hpp"
@@ -15,6 +17,7 @@
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
 #include "hwy/highway.h"
+#include "image/vectors.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
@@ -35,27 +38,37 @@ HWY_INLINE double alpha_of(double a, double b, double isovalue, double epsilon) 
   return std::clamp(alpha, epsilon, 1.0 - epsilon) + 0.0;  // never -0, for which instruction sets differ
 }
 
-/// Interpolation parameters of some edges from the samples at their ends.
-HWY_INLINE void alphas_of(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
-                          double* out) {
+/// Interpolation parameters of some edges from the samples at their ends, of type double or float.
+template <class T>
+HWY_INLINE void alphas_of(const T* from, const T* to, std::size_t count, double isovalue, double epsilon, double* out) {
   const hn::ScalableTag<double> d;
+  const hn::Rebind<T, decltype(d)> samples;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   const auto threshold = hn::Set(d, isovalue);
   const auto least = hn::Set(d, epsilon);
   const auto most = hn::Set(d, 1.0 - epsilon);
   const auto finite = hn::Set(d, std::numeric_limits<double>::max());
-  std::size_t i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    const auto start = hn::LoadU(d, from + i);
-    const auto difference = hn::Sub(hn::LoadU(d, to + i), start);
-    if (!hn::AllTrue(d, hn::Le(hn::Abs(difference), finite))) {
-      for (std::size_t j = i; j < i + kLanes; ++j) out[j] = alpha_of(from[j], to[j], isovalue, epsilon);
-      continue;
-    }
+  const auto value = [&](const T* at) HWY_ATTR {
+    if constexpr (std::is_same_v<T, double>)
+      return hn::LoadU(d, at);
+    else
+      return hn::PromoteTo(d, hn::LoadU(samples, at));
+  };
+  const auto each = [&](std::size_t first, std::size_t end) HWY_ATTR {
+    for (std::size_t i = first; i < end; ++i)
+      out[i] = alpha_of(static_cast<double>(from[i]), static_cast<double>(to[i]), isovalue, epsilon);
+  };
+  const auto some = [&](std::size_t i) HWY_ATTR {
+    const auto start = value(from + i);
+    const auto difference = hn::Sub(value(to + i), start);
+    if (!hn::AllTrue(d, hn::Le(hn::Abs(difference), finite))) return each(i, i + kLanes);
     const auto alpha = hn::Div(hn::Sub(threshold, start), difference);
     hn::StoreU(hn::Add(hn::Min(hn::Max(alpha, least), most), hn::Zero(d)), d, out + i);
-  }
-  for (; i < count; ++i) out[i] = alpha_of(from[i], to[i], isovalue, epsilon);
+  };
+  if (count < kLanes) return each(0, count);
+  std::size_t i = 0;
+  for (; i + kLanes <= count; i += kLanes) some(i);
+  if (i < count) some(count - kLanes);  // some are computed twice
 }
 
 template <class T>
@@ -74,6 +87,51 @@ HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsi
     alphas_of(from, to, count, isovalue, epsilon, out + first);
   }
 }
+
+#if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+
+/// Samples are read by registers, in which the ends of edges are chosen.
+void alphas_of_row(const EdgesOfSamples& row, double isovalue, double epsilon, double* out) {
+  const hn::ScalableTag<float> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  static_assert(kLanes <= kLeastEdges);
+  constexpr std::size_t kBlock = 256;
+  float from[kBlock + kLanes];
+  float to[kBlock + kLanes];
+  // local, because stores of vectors may change any memory
+  const EdgesOfSamples edges = row;
+  for (std::size_t first = 0; first < edges.edges; first += kBlock) {
+    std::size_t count = 0;
+    const auto some = [&](std::size_t x, std::size_t skipped) HWY_ATTR {
+      const std::size_t shift = x % kWordBits;
+      Word bits = edges.critical[x / kWordBits] >> shift;
+      if (shift > kWordBits - kLanes) bits |= edges.critical[x / kWordBits + 1] << (kWordBits - shift);
+      bits &= (Word{1} << kLanes) - (Word{1} << skipped);
+      const auto chosen = mask_of(d, bits);
+      hn::StoreU(hn::Compress(hn::LoadU(d, edges.starts + x), chosen), d, from + count);
+      hn::StoreU(hn::Compress(hn::LoadU(d, edges.ends + x), chosen), d, to + count);
+      count += static_cast<std::size_t>(std::popcount(bits));
+    };
+    const std::size_t end = std::min(first + kBlock, edges.edges);
+    std::size_t x = first;
+    for (; x + kLanes <= end; x += kLanes) some(x, 0);
+    if (x < end) some(end - kLanes, x - (end - kLanes));
+    alphas_of(from, to, count, isovalue, epsilon, out);
+    out += count;
+  }
+}
+
+#else
+
+void alphas_of_row(const EdgesOfSamples& row, double isovalue, double epsilon, double* out) {
+  for (std::size_t w = 0; w * kWordBits < row.edges; ++w)
+    for (Word rest = row.critical[w]; rest != 0; rest &= rest - 1) {
+      const std::size_t x = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
+      *out++ = alpha_of(static_cast<double>(row.starts[x]), static_cast<double>(row.ends[x]), isovalue, epsilon);
+    }
+}
+
+#endif
 
 void alphas_of_ends(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
                     double* out) {
@@ -135,6 +193,11 @@ HWY_EXPORT(alphas_of_ends);
 void alphas_between(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
                     double* out) noexcept {
   HWY_DYNAMIC_DISPATCH(alphas_of_ends)(from, to, count, isovalue, epsilon, out);
+}
+
+HWY_EXPORT(alphas_of_row);
+void row_alphas(const EdgesOfSamples& row, double isovalue, double epsilon, double* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(alphas_of_row)(row, isovalue, epsilon, out);
 }
 
 HWY_EXPORT(alphas_4d);

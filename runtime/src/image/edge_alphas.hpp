@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "image/bitplanes.hpp"
 #include "tegl/image.hpp"
 
 namespace tegl::detail {
@@ -26,6 +27,18 @@ struct EdgeSamples {
 /// the middle between two infinities.
 template <Value T>
 void edge_alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept;
+
+/// Critical edges of one row, whose samples are adjacent in memory. Edge i goes from starts[i] to ends[i].
+struct EdgesOfSamples {
+  const float* starts;
+  const float* ends;
+  std::size_t edges;     ///< of the row, critical or not; at least kLeastEdges
+  const Word* critical;  ///< a bit for each edge; no bits are set after the last one
+};
+inline constexpr std::size_t kLeastEdges = 16;
+/// edge_alphas for the edges of a row, in ascending order. Faster if many are critical.
+void row_alphas(const EdgesOfSamples& row, double isovalue, double epsilon, double* out) noexcept;
+
 /// The same from the values at both ends of each edge.
 void alphas_between(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
                     double* out) noexcept;

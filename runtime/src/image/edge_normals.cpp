@@ -6,6 +6,7 @@
 #include "image/edge_normals.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "image/row_gradients.hpp"
 
@@ -15,25 +16,13 @@
 // This include must precede Highway's own headers.
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
+#include "image/vectors.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-
-template <class D, class V>
-HWY_INLINE void store_normals(D d, const std::array<V, 2>& x, hn::TFromD<D>* out) {
-  hn::StoreInterleaved2(x[0], x[1], d, out);
-}
-template <class D, class V>
-HWY_INLINE void store_normals(D d, const std::array<V, 3>& x, hn::TFromD<D>* out) {
-  hn::StoreInterleaved3(x[0], x[1], x[2], d, out);
-}
-template <class D, class V>
-HWY_INLINE void store_normals(D d, const std::array<V, 4>& x, hn::TFromD<D>* out) {
-  hn::StoreInterleaved4(x[0], x[1], x[2], x[3], d, out);
-}
 
 template <class Real, class D>
 HWY_INLINE auto to_real(D /*d*/, hn::Vec<D> value) {
@@ -85,21 +74,22 @@ HWY_INLINE std::array<hn::Vec<D>, N> gradients(D d, const NormalRow<N, Real, hn:
   return result;
 }
 
-/// Writes normals of length 1 in the direction of vectors. Returns the lanes whose normals are undefined.
+/// Writes normals of length 1 in the direction of gradients, or against it if `sign` is -1. Returns the lanes whose
+/// normals are undefined.
 template <class Real, class D, std::size_t N>
-HWY_INLINE Word write_unit(D d, const std::array<hn::Vec<D>, N>& normal, Real* out) {
+HWY_INLINE Word write_unit(D d, const std::array<hn::Vec<D>, N>& gradient, hn::Vec<D> sign, Real* out) {
   using Calc = hn::TFromD<D>;
   constexpr bool kFloat = std::is_same_v<Calc, float>;
   // Within these bounds, squares and the reciprocals of their roots are accurate to the last bits.
   const auto least = hn::Set(d, static_cast<Calc>(kFloat ? 1e-30 : 1e-280));
   const auto most = hn::Set(d, static_cast<Calc>(kFloat ? 1e30 : 1e280));
   auto square = hn::Zero(d);
-  for (unsigned a = 0; a < N; ++a) square = hn::Add(square, hn::Mul(normal[a], normal[a]));
-  const auto inverse = hn::Div(hn::Set(d, Calc{1}), hn::Sqrt(square));
+  for (unsigned a = 0; a < N; ++a) square = hn::Add(square, hn::Mul(gradient[a], gradient[a]));
+  const auto inverse = hn::Div(sign, hn::Sqrt(square));
   const hn::Rebind<Real, D> real;
   std::array<hn::Vec<decltype(real)>, N> result;
-  for (unsigned a = 0; a < N; ++a) result[a] = to_real<Real>(d, hn::Mul(normal[a], inverse));
-  store_normals(real, result, out);
+  for (unsigned a = 0; a < N; ++a) result[a] = to_real<Real>(d, hn::Mul(gradient[a], inverse));
+  store_points(real, result, out);
   // lanes out of bounds
   const auto good = hn::And(hn::Gt(square, least), hn::Lt(square, most));
   if (HWY_LIKELY(hn::AllTrue(d, good))) return 0;
@@ -115,17 +105,15 @@ HWY_INLINE Word write_unit(D d, const std::array<hn::Vec<D>, N>& normal, Real* o
 template <class D, int N, class Real>
 HWY_INLINE Word write_some(D d, const NormalRow<N, Real, hn::TFromD<D>>& row, std::size_t i, Real* out) {
   const auto gradient = gradients(d, row, i);
-  std::array<hn::Vec<D>, N> normal;  // in the world
+  const auto sign = hn::Set(d, row.sign);
+  if (row.to_world == nullptr) return write_unit<Real>(d, gradient, sign, out);
+  std::array<hn::Vec<D>, N> in_world;
   for (unsigned a = 0; a < N; ++a) {
-    if (row.to_world == nullptr) {
-      normal[a] = hn::Mul(hn::Set(d, row.sign), gradient[a]);
-    } else {
-      normal[a] = hn::Zero(d);
-      for (unsigned b = 0; b < N; ++b)
-        normal[a] = hn::Add(normal[a], hn::Mul(hn::Set(d, row.to_world[a * N + b]), gradient[b]));
-    }
+    in_world[a] = hn::Zero(d);
+    for (unsigned b = 0; b < N; ++b)
+      in_world[a] = hn::Add(in_world[a], hn::Mul(hn::Set(d, row.to_world[a * N + b]), gradient[b]));
   }
-  return write_unit<Real>(d, normal, out);
+  return write_unit<Real>(d, in_world, hn::Set(d, hn::TFromD<D>{1}), out);
 }
 
 template <int N, class Real, class Calc>
@@ -142,55 +130,104 @@ HWY_INLINE Word normals(const NormalRow<N, Real, Calc>& row) {
   return left & ((Word{1} << row.count) - 1);
 }
 
+/// Reads an entry of a struct by itself. The struct may just have been written entry by entry; a vector load of several
+/// would wait for these stores.
+template <class T>
+HWY_INLINE T read_alone(const T& entry) {
+  const volatile T& alone = entry;
+  return alone;
+}
+
 template <int N>
 HWY_INLINE void row_gradients(const RowDifferences<N>& row) {
   const hn::ScalableTag<float> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   static_assert(kLanes + 2 <= kLeastRow);
-  const RowDifferences<N> from = row;  // local, because stores of vectors may change any memory
+  // local, because stores of vectors may change any memory
+  std::array<std::array<const float*, 2>, N> beside;
   std::array<std::array<hn::Vec<decltype(d)>, 2>, N> weights;
-  for (unsigned a = 0; a < N; ++a)
-    weights[a] = {hn::Set(d, static_cast<float>(from.weights[a].backward)),
-                  hn::Set(d, static_cast<float>(from.weights[a].forward))};
+  const float* const centre = read_alone(row.here);
+  for (unsigned a = 0; a < N; ++a) {
+    beside[a] = {a == 0 ? centre - 1 : read_alone(row.backward[a]), a == 0 ? centre + 1 : read_alone(row.forward[a])};
+    weights[a] = {hn::Set(d, static_cast<float>(read_alone(row.weights[a].backward))),
+                  hn::Set(d, static_cast<float>(read_alone(row.weights[a].forward)))};
+  }
+  float* const out = row.out;
+  const std::size_t pitch = row.pitch, last = row.samples - 1 - kLanes;
+  const std::ptrdiff_t next = row.next;
   const auto some = [&](std::size_t x) HWY_ATTR {
-    const auto here = hn::LoadU(d, from.here + x);
+    const auto here = hn::LoadU(d, centre + x);
     for (unsigned a = 0; a < N; ++a) {
-      const float* const backward = a == 0 ? from.here + x - 1 : from.backward[a] + x;
-      const float* const forward = a == 0 ? from.here + x + 1 : from.forward[a] + x;
+      const float* const forward = beside[a][1] + x;
       const auto ahead = hn::Mul(hn::Sub(hn::LoadU(d, forward), here), weights[a][1]);
-      const auto back = hn::Mul(hn::Sub(here, hn::LoadU(d, backward)), weights[a][0]);
-      hn::StoreU(hn::Add(ahead, back), d, from.out + a * from.pitch + x);
-      if (a != 0) hwy::Prefetch(forward + from.next);
+      const auto back = hn::Mul(hn::Sub(here, hn::LoadU(d, beside[a][0] + x)), weights[a][0]);
+      hn::StoreU(hn::Add(ahead, back), d, out + a * pitch + x);
+      if (a != 0) hwy::Prefetch(forward + next);
     }
   };
-  const std::size_t last = from.samples - 1 - kLanes;
-  for (std::size_t x = 1; x < last; x += kLanes) some(x);
+  // The first sample has no neighbour before it. From the second register on, stores are aligned.
+  some(1);
+  for (std::size_t x = kLanes; x < last; x += kLanes) some(x);
   some(last);
 }
+
+/// Positions on the edges of a row, which are found by the bits of the edges.
+class PositionsOnRow {
+ public:
+  using D = hn::ScalableTag<float>;
+
+  /// `working`: as many floats as the row has samples, and kRowMargin.
+  HWY_INLINE PositionsOnRow(const std::uint32_t* at, const double* alphas, std::size_t count, float* working)
+      : next_(working) {
+#if HWY_TARGET <= HWY_AVX3
+    static_cast<void>(at);
+    const D d;
+    for (std::size_t i = 0; i < count; i += hn::MaxLanes(d)) hn::StoreU(load_alphas(d, alphas + i), d, working + i);
+#else
+    for (std::size_t i = 0; i < count; ++i) working[at[i]] = static_cast<float>(alphas[i]);
+#endif
+  }
+  /// Positions on the edges from the samples x, x + 1 ...; undefined where `edges`, `count` of them, has none.
+  HWY_INLINE hn::Vec<D> at(std::size_t x, hn::Mask<D> edges, std::size_t count) {
+#if HWY_TARGET <= HWY_AVX3
+    static_cast<void>(x);
+    const auto positions = hn::LoadU(D(), next_);
+    next_ += count;
+    return hn::Vec<D>{_mm512_maskz_expand_ps(edges.raw, positions.raw)};
+#else
+    static_cast<void>(edges);
+    static_cast<void>(count);
+    return hn::LoadU(D(), next_ + x);
+#endif
+  }
+
+ private:
+  const float* next_;
+};
 
 /// Interpolates the gradients at the ends of edges. Whole registers are computed, and the lanes with edges stored.
 template <int N>
 HWY_INLINE void interpolate(const EdgesOfRow<N>& edges) {
   const hn::ScalableTag<float> d;
-  const hn::RebindToSigned<decltype(d)> integers;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  float* const by_sample = edges.alphas_by_sample;
-  for (std::size_t i = 0; i < edges.count; ++i) by_sample[edges.at[i]] = static_cast<float>(edges.alphas[i]);
-  const auto none = hn::Set(d, kNoEdge);
+  // local, because stores of vectors may change any memory
   const std::size_t samples = edges.samples, pitch = edges.pitch;
+  const Word* const critical = edges.critical;
   const float* const first = edges.ends[0];
   const float* const second = edges.ends[1];
   float* out = edges.gradients;
+  PositionsOnRow positions(edges.at, edges.alphas, edges.count, edges.positions);
   for (std::size_t x = 0; x < samples; x += kLanes) {
-    const auto alpha = hn::LoadU(d, by_sample + x);
-    const auto chosen = hn::RebindMask(d, hn::Ne(hn::BitCast(integers, alpha), hn::BitCast(integers, none)));
-    hn::StoreU(none, d, by_sample + x);
+    const Word bits = critical[x / kWordBits] >> (x % kWordBits) & ((Word{1} << kLanes) - 1);
+    const auto count = static_cast<std::size_t>(std::popcount(bits));
+    const auto chosen = mask_of(d, bits);
+    const auto alpha = positions.at(x, chosen, count);
     for (unsigned a = 0; a < N; ++a) {
       const auto here = hn::LoadU(d, first + a * pitch + x);
       const auto there = hn::LoadU(d, second + a * pitch + x);
       hn::StoreU(hn::Compress(hn::Add(here, hn::Mul(alpha, hn::Sub(there, here))), chosen), d, out + a * pitch);
     }
-    out += hn::CountTrue(d, chosen);
+    out += count;
   }
 }
 
@@ -205,18 +242,22 @@ HWY_INLINE void row_normals(const EdgesOfRow<N>& edges) {
   Word* const left = edges.left;
   std::array<float, N>* const out = edges.out;
   const auto some = [&](std::size_t i, float* to) HWY_ATTR {
-    std::array<hn::Vec<decltype(d)>, N> normal;
-    for (unsigned a = 0; a < N; ++a) normal[a] = hn::Mul(sign, hn::LoadU(d, from + a * pitch + i));
-    left[i / kWordBits] |= write_unit<float>(d, normal, to) << (i % kWordBits);
+    std::array<hn::Vec<decltype(d)>, N> gradient;
+    for (unsigned a = 0; a < N; ++a) gradient[a] = hn::LoadU(d, from + a * pitch + i);
+    const Word lanes = write_unit<float>(d, gradient, sign, to);
+    if (HWY_LIKELY(lanes == 0)) return;
+    left[i / kWordBits] |= lanes << (i % kWordBits);
+    if (i % kWordBits > kWordBits - kLanes) left[i / kWordBits + 1] |= lanes >> (kWordBits - i % kWordBits);
   };
-  std::fill_n(left, (count + kWordBits - 1) / kWordBits, Word{0});
+  std::fill_n(left, count / kWordBits + 1, Word{0});
   std::size_t i = 0;
   for (; i + kLanes <= count; i += kLanes) some(i, out[i].data());
   if (i == count) return;
+  if (count >= kLanes) return some(count - kLanes, out[count - kLanes].data());  // some are written twice
   std::array<std::array<float, N>, kLanes> last;
-  some(i, last[0].data());
-  std::copy_n(last.begin(), count - i, out + i);
-  if (count % kWordBits != 0) left[count / kWordBits] &= (Word{1} << (count % kWordBits)) - 1;
+  some(0, last[0].data());
+  std::copy_n(last.begin(), count, out);
+  left[0] &= (Word{1} << count) - 1;
 }
 
 // Highway's dispatch tables cannot hold templates.

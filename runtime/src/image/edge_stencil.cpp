@@ -198,6 +198,44 @@ struct FourRows {
   HWY_INLINE V after_next() const { return hn::ConcatUpperUpper(d, upper23, upper01); }
 };
 
+/// The sample of each of four edges and the next one.
+template <class D>
+struct FourPairs {
+  hn::Vec<D> here, next;
+
+  template <class T>
+  HWY_INLINE FourPairs(D d, const T* from, const std::array<std::ptrdiff_t, 4>& at) {
+#if HWY_ARCH_X86
+    if constexpr (std::is_same_v<T, float> && std::is_same_v<hn::TFromD<D>, float>) {
+      // Only the two: the four that FourRows reads are often in two cache lines.
+      static_cast<void>(d);
+      const auto pair = [&](unsigned i) HWY_ATTR {
+        return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from + at[i])));
+      };
+      const __m128 first = _mm_unpacklo_ps(pair(0), pair(1)), second = _mm_unpacklo_ps(pair(2), pair(3));
+      here = hn::Vec<D>{_mm_movelh_ps(first, second)};
+      next = hn::Vec<D>{_mm_movehl_ps(second, first)};
+      return;
+    }
+#endif
+    const FourRows<D> rows(d, from, at);
+    here = rows.here();
+    next = rows.next();
+  }
+};
+
+/// The sample of each of four edges.
+template <class D, class T>
+HWY_INLINE hn::Vec<D> four_values(D d, const T* from, const std::array<std::ptrdiff_t, 4>& at) {
+#if HWY_ARCH_X86
+  if constexpr (std::is_same_v<T, float> && std::is_same_v<hn::TFromD<D>, float>) {
+    const auto value = [&](unsigned i) HWY_ATTR { return _mm_load_ss(from + at[i]); };
+    return hn::Vec<D>{_mm_movelh_ps(_mm_unpacklo_ps(value(0), value(1)), _mm_unpacklo_ps(value(2), value(3)))};
+  }
+#endif
+  return FourRows<D>(d, from, at).here();
+}
+
 /// Reads four edges, whose first samples are at `at`. `single`, `singles`: places of neighbours in rows of their own.
 template <bool kAlongRow, class T, class Calc>
 HWY_INLINE void gather_four(const T* const* from, std::size_t own, const std::uint8_t* single, std::size_t singles,
@@ -224,9 +262,13 @@ HWY_INLINE void gather_four(const T* const* from, std::size_t own, const std::ui
   }
   for (std::size_t i = 0; i < singles; ++i) {
     const std::size_t place = single[i];
-    const Rows beside(d, from[place], at);
-    store(place, beside.here());
-    if constexpr (kAlongRow) store(place + 2, beside.next());
+    if constexpr (kAlongRow) {
+      const FourPairs beside(d, from[place], at);
+      store(place, beside.here);
+      store(place + 2, beside.next);
+    } else {
+      store(place, four_values(d, from[place], at));
+    }
   }
 }
 

@@ -27,7 +27,7 @@ struct RowDifferences {
   std::array<StepWeights, N> weights;
   std::size_t samples;  ///< at least kLeastRow
   std::ptrdiff_t next;  ///< to the row that is probably next; 0: unknown
-  float* out;           ///< derivatives along axis a from a * pitch on
+  float* out;           ///< derivatives along axis a from a * pitch on; stores are faster if it is aligned
   std::size_t pitch;    ///< at least samples + kRowMargin
 };
 
@@ -42,18 +42,16 @@ struct EdgesOfRow {
   std::array<const float*, 2> ends;
   std::size_t pitch;
   std::size_t samples;
+  const Word* critical;     ///< samples bits: the first samples of the edges
   const std::uint32_t* at;  ///< by edge: its first sample
-  const double* alphas;     ///< by edge: its vertex's position on it
+  const double* alphas;     ///< by edge: its vertex's position on it; up to 15 entries past the end are read
   std::size_t count;
   float sign;
-  float* alphas_by_sample;  ///< samples + kRowMargin, kNoEdge everywhere before and after
-  float* gradients;         ///< N x pitch: working storage
+  float* positions;  ///< samples + kRowMargin finite numbers: working storage
+  float* gradients;  ///< N x pitch: working storage
   std::array<float, N>* out;
-  Word* left;  ///< `count` bits: set where a normal is undefined, as write_normals returns them
+  Word* left;  ///< count + 1 bits: set where a normal is undefined, as write_normals returns them
 };
-
-/// In EdgesOfRow::alphas_by_sample. Positions are not negative.
-inline constexpr float kNoEdge = -1.0F;
 
 /// Writes normals of length 1.
 template <int N>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "image/edge_alphas.hpp"
@@ -24,6 +25,12 @@ template <Value T, int N>
 void RowSource<T, N>::edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept {
   const T* const samples = layer(k);
   const T* const others = axis == N - 1 ? layer(k + 1) : samples + strides()[axis];
+  if constexpr (std::is_same_v<T, float>) {
+    const std::size_t most = row_size_ - (axis == 0 ? 1 : 0);
+    if (edges.critical != nullptr && strides()[0] == 1 && most >= kLeastEdges)
+      return row_alphas({samples + edges.rows[0], others + edges.rows[0], most, edges.critical}, this->isovalue(),
+                        epsilon_, out);
+  }
   detail::edge_alphas<T>({samples, others, edges.rows, edges.at, edges.count, strides()[0]}, this->isovalue(), epsilon_,
                          out);
 }

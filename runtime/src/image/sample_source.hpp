@@ -94,6 +94,9 @@ struct EdgesInRows {
   const std::ptrdiff_t* rows;
   const std::uint32_t* at;
   std::size_t count;
+  /// If the edges are all critical ones of one row, which has many of them: the bits of their first samples, by which
+  /// they may be found faster. Otherwise null.
+  const Word* critical = nullptr;
 };
 
 /// The memory of a layer of samples, or of other values from which the interpolation parameters are computed.

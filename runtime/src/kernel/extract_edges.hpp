@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hwy/cache_control.h"
+#include "image/edge_list.hpp"
 #include "image/vertex_moves.hpp"
 #include "kernel/contour_output.hpp"
 #include "kernel/extract_layers.hpp"
@@ -65,7 +66,10 @@ class EdgeWriter {
         strides_(source.strides()),
         full_(full(shape.size(0))),
         fetches_(shape.rows() * shape.size(0) >= kLeastFetched) {
-    for (int a = 0; a < N; ++a) lists_[a].allocate(shape.size(0), a > 0 && a + 1 < N);
+    const std::size_t samples = shape.size(0);
+    for (int a = 0; a < N; ++a)
+      lists_[a].allocate(room(samples), room_at_once(samples), room_together(samples), shape.words(),
+                         a > 0 && a + 1 < N);
     segments_.reserve(most_segments(shape.size(0)));  // nothing may throw after construction
     if (placement.normals() == nullptr) return;
     normals_ = std::make_unique<NormalScratch>();
@@ -79,7 +83,9 @@ class EdgeWriter {
   static constexpr std::size_t bytes(std::size_t samples, bool normals) noexcept {
     constexpr std::size_t kEach = sizeof(std::ptrdiff_t) + N * sizeof(double);
     const std::size_t vertices = room_together(samples) * (normals ? 2 : 1);
-    return N * (sizeof(std::uint32_t) * room(samples) + kEach * room_at_once(samples) + sizeof(Vertex) * vertices) +
+    const std::size_t bits = (samples / kWordBits + 1) * sizeof(Word);
+    return N * (sizeof(std::uint32_t) * room(samples) + kEach * room_at_once(samples) + sizeof(Vertex) * vertices +
+                bits) +
            most_segments(samples) * sizeof(Segment) +
            (normals ? sizeof(NormalScratch) + (kHasRowNormals ? RowNormals<N>::bytes(samples) : 0) : 0);
   }
@@ -106,10 +112,13 @@ class EdgeWriter {
       counts[a] = plane.count[row];
       firsts[a] = plane.first(row);
     }
-    add(row, counts, firsts, [&](const std::array<std::uint32_t*, 4>& out) {
-      list_tile_edges<N>({tiles.signatures, tiles.at, tiles.count, out});
-      list_last(view, row, counts, out);
-    });
+    add(
+        row, counts, firsts,
+        [&](const std::array<std::uint32_t*, 4>& out) {
+          list_tile_edges<N>({tiles.signatures, tiles.at, tiles.count, out});
+          list_last(view, row, counts, out);
+        },
+        [&](int axis, Word* out) { view.write_edges(axis, row, out); });
   }
 
   /// Adds the edges of a row of `layer` (axes 0 ... N-2) and of `slab` (axis N-1), from their bits. Either may be null.
@@ -125,10 +134,14 @@ class EdgeWriter {
       counts[a] = planes[a]->count[row];
       firsts[a] = planes[a]->first(row);
     }
-    add(row, counts, firsts, [&](const std::array<std::uint32_t*, 4>& out) {
-      for (int a = 0; a < N; ++a)
-        if (counts[a] != 0) list_bits(planes[a]->bits[0].data() + row * shape_.words(), shape_.words(), out[a]);
-    });
+    const auto bits = [&](int axis) { return planes[axis]->bits[0].data() + row * shape_.words(); };
+    add(
+        row, counts, firsts,
+        [&](const std::array<std::uint32_t*, 4>& out) {
+          for (int a = 0; a < N; ++a)
+            if (counts[a] != 0) list_bits(bits(a), shape_.words(), out[a]);
+        },
+        [&](int axis, Word* out) { std::copy_n(bits(axis), shape_.words(), out); });
   }
 
  private:
@@ -136,6 +149,8 @@ class EdgeWriter {
   static constexpr std::size_t kMargin = 16;   ///< entries that vector code reads or writes past the end of lists
   static constexpr std::uint32_t kMany = 48;   ///< rows with so many edges are not combined with others
   static constexpr std::size_t kAtOnce = 8;    ///< values per store
+  /// With fewer edges, it is faster to read the samples around each.
+  static constexpr std::size_t kSamplesPerEdge = 3;
   static constexpr std::size_t kPiece = 4096;  ///< maximum edges of one row processed at a time
   /// Samples of the smallest layer that is not still in a near cache when its vertices are computed.
   static constexpr std::size_t kLeastFetched = std::size_t{1} << 16;
@@ -153,28 +168,7 @@ class EdgeWriter {
   /// Every segment has at least one edge.
   static constexpr std::size_t most_segments(std::size_t samples) noexcept { return N * (full(samples) + 1); }
 
-  /// Edges along one axis. If they are all of one row, the arrays below `at` hold at most one piece (kPiece): their
-  /// values are equal along the row, or are consumed before the next piece.
-  struct List {
-    std::size_t size = 0;
-    std::vector<std::uint32_t> at;
-    std::vector<std::ptrdiff_t> rows;
-    std::array<std::vector<double>, N> start;  ///< as in EdgePoints
-    std::vector<double> end;
-    std::vector<double> alphas;
-    std::vector<Vertex> points;   ///< edges of several rows
-    std::vector<Vertex> normals;  ///< edges of several rows, if normals are requested
-
-    void allocate(std::size_t samples, bool has_end) {
-      at.resize(room(samples));
-      points.resize(room_together(samples));
-      const std::size_t most = room_at_once(samples);
-      rows.resize(most);
-      alphas.resize(most);
-      for (int a = 1; a + 1 < N; ++a) start[a].resize(most);
-      if (has_end) end.resize(most);
-    }
-  };
+  using List = EdgeList<N, Vertex>;
   /// Range of one row's edges in a list.
   struct Segment {
     std::size_t row;
@@ -191,8 +185,9 @@ class EdgeWriter {
   }
 
   /// Appends the edges of a row to the lists of all axes.
-  template <class ListEdges>
-  void add(std::size_t row, const Counts& counts, const Firsts& firsts, const ListEdges& list_edges) noexcept {
+  template <class ListEdges, class WriteBits>
+  void add(std::size_t row, const Counts& counts, const Firsts& firsts, const ListEdges& list_edges,
+           const WriteBits& write_bits_of) noexcept {
     const std::uint32_t most = *std::max_element(counts.begin(), counts.end());
     if (most == 0) return;
     const auto& index = shape_.index_of(row);
@@ -214,6 +209,8 @@ class EdgeWriter {
       fill(list.rows, list.size, filled, offset);
       for (int a = 1; a + 1 < N; ++a) fill(list.start[a], list.size, filled, placement_.sample(a, index[a]));
       if (axis > 0 && axis + 1 < N) fill(list.end, list.size, filled, placement_.sample(axis, index[axis] + 1));
+      list.has_bits = alone && are_dense(count);
+      if (list.has_bits) write_bits_of(axis, list.critical.data());
       if (!alone) fetch_samples(axis, list.at.data() + list.size, filled, offset);
       segments_.push_back({row, axis, static_cast<std::uint32_t>(list.size), count, firsts[axis]});
       list.size += count;
@@ -232,6 +229,11 @@ class EdgeWriter {
       hwy::Prefetch(ends.layer.first + offset);
       if (axis != 0) hwy::Prefetch(ends.next + offset);  // along the row, both are in the same cache line or adjacent
     }
+  }
+
+  /// Whether a row has so many edges that its samples are read by registers, in which the edges are chosen.
+  [[nodiscard]] bool are_dense(std::size_t edges) const noexcept {
+    return edges * kSamplesPerEdge >= shape_.size(0) && edges <= kPiece;
   }
 
   /// Adds the edges at a row's last sample, where no tile starts. Each is the last of its list.
@@ -287,7 +289,7 @@ class EdgeWriter {
   EdgesInRows make_points(int axis, std::size_t first, Vertex* out) noexcept {
     List& list = lists_[axis];
     const std::size_t layer = run(axis).layer;
-    const EdgesInRows edges{list.rows.data(), list.at.data() + first, std::min(kPiece, list.size - first)};
+    const EdgesInRows edges = list.piece(first, std::min(kPiece, list.size - first));
     source_.edge_alphas(layer, axis, edges, list.alphas.data());
     EdgePoints<N, Real> points{};
     points.at = edges.at;
@@ -309,13 +311,11 @@ class EdgeWriter {
     }
   }
 
-  /// Computes the normals of a row after make_points; its edges must be one piece. Returns false if this is done by
-  /// make_normals.
+  /// Computes the normals of a row after make_points, if its edges are dense. Otherwise returns false.
   bool make_normals_of_row([[maybe_unused]] int axis, [[maybe_unused]] const EdgesInRows& edges,
                            [[maybe_unused]] Vertex* out) noexcept {
     if constexpr (kHasRowNormals) {
-      static_assert(RowNormals<N>::kMostSamples <= kPiece);
-      if (row_normals_ == nullptr || !row_normals_->are_enough(edges.count)) return false;
+      if (row_normals_ == nullptr || edges.critical == nullptr) return false;
       const std::size_t row = segments_.front().row;
       row_normals_->write(row, start_in(row, axis), axis, edges, lists_[axis].alphas.data(), out);
       return true;
@@ -360,12 +360,14 @@ class EdgeWriter {
     Vertex* const to = all + static_cast<Index>(segment.vertex - vertices.first);
     const Vertex* const end = all + (run(segment.axis).end - vertices.data);
     const Vertex* const from = list.data() + segment.first;
-    // Copying a fixed number is faster than copying the exact one. Later segments overwrite the surplus, as the
-    // segments of a run come in vertex order.
-    if (segment.count <= kAtOnce && end - to >= static_cast<std::ptrdiff_t>(kAtOnce))
-      std::memcpy(to, from, kAtOnce * sizeof(Vertex));
-    else
+    // Copying fixed numbers is faster than copying the exact one. Later segments overwrite the surplus, as the segments
+    // of a run come in vertex order. Lists have kMargin more entries.
+    const std::size_t rounded = (segment.count + kAtOnce - 1) / kAtOnce * kAtOnce;
+    if (end - to < static_cast<std::ptrdiff_t>(rounded)) {
       std::copy_n(from, segment.count, to);
+      return;
+    }
+    for (std::size_t i = 0; i < rounded; i += kAtOnce) std::memcpy(to + i, from + i, kAtOnce * sizeof(Vertex));
   }
 
   const EdgeCrossings<N>& source_;

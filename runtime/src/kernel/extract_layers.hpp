@@ -296,6 +296,18 @@ struct SlabView {
   [[nodiscard]] const EdgePlane& edges(int axis, unsigned up) const noexcept {
     return axis == N - 1 ? slab->edges : layers[up]->edges[static_cast<std::size_t>(axis)];
   }
+  /// Writes the bits of a row's critical edges, in the upper layer or along the last axis. All tiles must be valid.
+  void write_edges(int axis, std::size_t row, Word* out) const noexcept {
+    const auto high = [&](unsigned up, unsigned mask) {
+      return layers[up]->high.data() + shape->shifted(row, mask) * shape->pitch();
+    };
+    const Word* const here = high(1, 0);
+    const Word* const there = axis == N - 1 ? high(0, 0) : high(1, 1u << axis);
+    for (std::size_t w = 0; w < shape->words(); ++w) {
+      const Word other = axis == 0 ? here[w] >> 1 | here[w + 1] << (kWordBits - 1) : there[w];
+      out[w] = (here[w] ^ other) & shape->mask(w, axis == 0);
+    }
+  }
   [[nodiscard]] const CubePlane& cubes(int omitted, unsigned up) const noexcept {
     return omitted == N - 1 ? layers[up]->cubes : slab->cubes[static_cast<std::size_t>(omitted)];
   }

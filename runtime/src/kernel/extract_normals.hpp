@@ -116,16 +116,19 @@ class NormalWriter {
   /// As on_edge for differences, from the values around the edge: value(place), places as for kEdgeValues. Along the
   /// row, there must be no neighbours beyond its ends.
   template <class ValueAt>
-  [[nodiscard]] Vertex on_edge_among(Index index, int axis, double alpha, const ValueAt& value) const noexcept {
+  [[nodiscard]] Vertex on_edge_among(const Index& index, int axis, double alpha, const ValueAt& value) const noexcept {
     const auto own = 4 * static_cast<unsigned>(axis);
-    std::array<std::array<double, N>, 2> at_end;
-    for (unsigned end = 0; end < 2; ++end, ++index[axis])
-      for (unsigned a = 0; a < N; ++a)
-        at_end[end][a] = derivative(value(4 * a + 2 * end), value(own + 2 - end), value(4 * a + 2 * end + 1),
-                                    steps_[a].at(index[a]));
-    std::array<double, N> gradient;
-    for (int a = 0; a < N; ++a) gradient[a] = (1.0 - alpha) * at_end[0][a] + alpha * at_end[1][a];
-    return normal(gradient);
+    const double first = value(own + 2), second = value(own + 1);
+    const auto along = [&](unsigned a) {
+      const double here = derivative(value(4 * a), first, value(4 * a + 1), steps_[a].at(index[a]));
+      const std::size_t next = index[a] + (static_cast<int>(a) == axis ? 1 : 0);
+      const double there = derivative(value(4 * a + 2), second, value(4 * a + 3), steps_[a].at(next));
+      return (1.0 - alpha) * here + alpha * there;
+    };
+    // Through parameters, because an array that is written entry by entry cannot be read as a vector soon after.
+    const auto normal_of = [&](auto... derivatives) { return normal({derivatives...}); };
+    return [&]<unsigned... A>(std::integer_sequence<unsigned, A...>) { return normal_of(along(A)...); }
+    (std::make_integer_sequence<unsigned, N>());
   }
 
   /// A normal with its uncertainty.
@@ -248,12 +251,13 @@ class NormalWriter {
   }
 
   /// Unit normal of a gradient; 0 if the gradient is zero.
-  [[nodiscard]] Vertex normal(std::array<double, N> gradient) const noexcept {
+  [[nodiscard]] Vertex normal(const std::array<double, N>& gradient) const noexcept {
     std::array<double, N> v = in_world(gradient);
     double square = square_of(v);
     if (!(square > 1e-280 && square < 1e280)) {
-      scale(gradient);
-      v = in_world(gradient);
+      std::array<double, N> scaled = gradient;
+      scale(scaled);
+      v = in_world(scaled);
       scale(v);
       square = square_of(v);
     }

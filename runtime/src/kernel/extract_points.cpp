@@ -13,6 +13,7 @@
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
 #include "hwy/highway.h"
+#include "image/vectors.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
@@ -59,19 +60,6 @@ HWY_INLINE auto to_real(D /*d*/, hn::Vec<D> value) {
     return hn::DemoteTo(hn::Rebind<float, D>(), value);
 }
 
-template <class D, class V>
-HWY_INLINE void store_vertices(D d, const std::array<V, 2>& x, hn::TFromD<D>* out) {
-  hn::StoreInterleaved2(x[0], x[1], d, out);
-}
-template <class D, class V>
-HWY_INLINE void store_vertices(D d, const std::array<V, 3>& x, hn::TFromD<D>* out) {
-  hn::StoreInterleaved3(x[0], x[1], x[2], d, out);
-}
-template <class D, class V>
-HWY_INLINE void store_vertices(D d, const std::array<V, 4>& x, hn::TFromD<D>* out) {
-  hn::StoreInterleaved4(x[0], x[1], x[2], x[3], d, out);
-}
-
 /// Coordinates along the row of samples `at` + `ahead`.
 template <class D, int N, class Real>
 HWY_INLINE hn::Vec<D> along_row(D d, const EdgePoints<N, Real>& edges, const std::uint32_t* at, unsigned ahead) {
@@ -115,7 +103,7 @@ HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i)
   }
   if (!std::isnan(edges.inside[0]))
     vertex[N - 1] = clamped(real, vertex[N - 1], hn::Set(real, edges.inside[0]), hn::Set(real, edges.inside[1]));
-  store_vertices(real, vertex, edges.out[i].data());
+  store_points(real, vertex, edges.out[i].data());
 }
 
 template <int Axis, int N, class Real>
@@ -123,6 +111,8 @@ HWY_INLINE void points_along(const EdgePoints<N, Real>& edges) {
   constexpr std::size_t kLanes = hn::MaxLanes(AllLanes());
   std::size_t i = 0;
   for (; i + kLanes <= edges.count; i += kLanes) write_some<Axis>(AllLanes(), edges, i);
+  if (i == edges.count) return;
+  if (edges.count >= kLanes) return write_some<Axis>(AllLanes(), edges, edges.count - kLanes);  // some twice
   for (; i < edges.count; ++i) write_some<Axis>(OneLane(), edges, i);
 }
 

@@ -35,7 +35,9 @@ class RowNormals {
   }
   /// Bytes for rows of `samples` samples.
   static constexpr std::size_t bytes(std::size_t samples) noexcept {
-    return has_room(samples) ? sizeof(RowNormals) + ((N + 1) * N + 1) * sizeof(float) * pitch_of(samples) : 0;
+    if (!has_room(samples)) return 0;
+    const std::size_t entries = ((N + 1) * N + 1) * pitch_of(samples) + (N + 1) * kAlignment;
+    return sizeof(RowNormals) + entries * sizeof(float) + (samples / kWordBits + 2) * sizeof(Word);
   }
 
   /// `suits` must be true. The arguments must outlive the object.
@@ -44,33 +46,38 @@ class RowNormals {
         writer_(writer),
         shape_(shape),
         pitch_(pitch_of(shape.size(0))),
-        by_sample_(pitch_, kNoEdge),
-        working_(N * pitch_) {
-    for (Row& row : rows_) row.gradients.resize(N * pitch_);
-  }
-
-  /// Whether so many edges of a row are worth the gradients of all its samples.
-  [[nodiscard]] bool are_enough(std::size_t edges) const noexcept {
-    return edges * kSamplesPerEdge >= shape_.size(0) && edges <= shape_.size(0);
+        positions_(pitch_),
+        working_(N * pitch_ + kAlignment),
+        left_(shape.words() + 1) {
+    for (Row& row : rows_) {
+      row.gradients.resize(N * pitch_ + kAlignment);
+      RowDifferences<N>& around = row.around;
+      around.weights[0] = writer.steps(0).inside();
+      around.samples = shape.size(0);
+      around.next = N > 2 ? source.strides()[1] : 0;
+      around.out = aligned(row.gradients);
+      around.pitch = pitch_;
+    }
   }
 
   /// Writes the normals on edges along `axis`, all of the row with the number `row`; `start`: the row's first sample.
-  /// Edges must be in ascending order.
+  /// Edges must be in ascending order, and have bits.
   void write(std::size_t row, const Index& start, int axis, const EdgesInRows& edges, const double* alphas,
              std::array<float, N>* out) noexcept {
     const Row& first = row_of(row, start);
     Index next = start;
     if (axis != 0) ++next[axis];
     const Row& second = axis == 0 ? first : row_of(shape_.shifted(row, 1u << axis), next);
-    write_row_normals<N>({{first.gradients.data(), second.gradients.data() + (axis == 0 ? 1 : 0)},
+    write_row_normals<N>({{first.around.out, second.around.out + (axis == 0 ? 1 : 0)},
                           pitch_,
                           shape_.size(0),
+                          edges.critical,
                           edges.at,
                           alphas,
                           edges.count,
                           static_cast<float>(writer_.sign()),
-                          by_sample_.data(),
-                          working_.data(),
+                          positions_.data(),
+                          aligned(working_),
                           out,
                           left_.data()});
     // At the row's ends, weights differ.
@@ -86,13 +93,19 @@ class RowNormals {
   }
 
  private:
-  /// With fewer edges, it is faster to read the samples around each.
-  static constexpr std::size_t kSamplesPerEdge = 3;
-
   static constexpr bool has_room(std::size_t samples) noexcept {
     return samples >= kLeastRow && samples <= kMostSamples;
   }
-  static constexpr std::size_t pitch_of(std::size_t samples) noexcept { return samples + kRowMargin; }
+  /// A register's, in floats.
+  static constexpr std::size_t kAlignment = 16;
+  static constexpr std::size_t pitch_of(std::size_t samples) noexcept {
+    return (samples + kAlignment - 1) / kAlignment * kAlignment + kRowMargin;
+  }
+  /// The first aligned entry. There are kAlignment more entries than are used.
+  static float* aligned(std::vector<float>& entries) noexcept {
+    const auto at = reinterpret_cast<std::uintptr_t>(entries.data()) / sizeof(float);
+    return entries.data() + (kAlignment - at % kAlignment) % kAlignment;
+  }
 
   /// Gradients of a row, which edges along several axes and of the next row need too.
   struct Row {
@@ -113,33 +126,32 @@ class RowNormals {
     found->used = ++now_;
     if (is_known) return *found;
     found->number = number;
-    found->around = around(start);
-    found->around.out = found->gradients.data();
+    surround(found->around, start);
     write_row_gradients<N>(found->around);
     return *found;
   }
 
-  [[nodiscard]] RowDifferences<N> around(const Index& start) const noexcept {
+  /// Sets the rows around a row. Entry by entry, because a struct that has been written in parts is slow to copy.
+  void surround(RowDifferences<N>& row, const Index& start) const noexcept {
     const auto& strides = source_.strides();
     std::ptrdiff_t offset = 0;
     for (int a = 1; a + 1 < N; ++a) offset += static_cast<std::ptrdiff_t>(start[a]) * strides[a];
     const auto in_layer = [&](std::size_t k) {
       return reinterpret_cast<const float*>(source_.layer_in_memory(k).first) + offset;
     };
-    RowDifferences<N> row{in_layer(start[N - 1]), {}, {}, {}, shape_.size(0), N > 2 ? strides[1] : 0, nullptr, pitch_};
-    row.weights[0] = writer_.steps(0).inside();
+    const float* const here = in_layer(start[N - 1]);
+    row.here = here;
     for (int a = 1; a < N; ++a) {
       const AxisSteps& steps = writer_.steps(a);
       const auto beside = [&](bool exists, bool ahead) {
-        if (!exists) return row.here;
+        if (!exists) return here;
         if (a == N - 1) return in_layer(ahead ? start[a] + 1 : start[a] - 1);
-        return ahead ? row.here + strides[a] : row.here - strides[a];
+        return ahead ? here + strides[a] : here - strides[a];
       };
       row.backward[a] = beside(steps.has_backward(start[a]), false);
       row.forward[a] = beside(steps.has_forward(start[a]), true);
       row.weights[a] = steps.at(start[a]);
     }
-    return row;
   }
 
   /// Normal on the edge from sample `at` of a row, at an end of the row or with an unusual gradient.
@@ -162,10 +174,10 @@ class RowNormals {
   const NormalWriter<N, float>& writer_;
   const RowShape<N>& shape_;
   std::size_t pitch_;
-  std::vector<float> by_sample_, working_;
+  std::vector<float> positions_, working_;
   std::array<Row, N> rows_;
   std::uint64_t now_ = 0;
-  std::array<Word, kMostSamples / kWordBits> left_{};
+  std::vector<Word> left_;
 };
 
 }  // namespace tegl::detail

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Vector code that several files share: masks from bits, and stores of points. Files that Highway compiles once per
+// instruction set include this after Highway's headers, so it is read once per instruction set.
+#if defined(TEGL_IMAGE_VECTORS) == defined(HWY_TARGET_TOGGLE)
+#ifdef TEGL_IMAGE_VECTORS
+#undef TEGL_IMAGE_VECTORS
+#else
+#define TEGL_IMAGE_VECTORS
+#endif
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "hwy/highway.h"
+#include "image/bitplanes.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace tegl::detail {
+namespace HWY_NAMESPACE {
+
+/// The lanes of `bits`, of which those past the last lane are 0.
+template <class D>
+HWY_INLINE hwy::HWY_NAMESPACE::Mask<D> mask_of(D d, Word bits) {
+#if HWY_TARGET <= HWY_AVX3
+  static_assert(hwy::HWY_NAMESPACE::MaxLanes(D()) == 16);
+  static_cast<void>(d);
+  return hwy::HWY_NAMESPACE::Mask<D>{static_cast<__mmask16>(bits)};
+#else
+  alignas(8) const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
+  return hwy::HWY_NAMESPACE::LoadMaskBits(d, bytes);
+#endif
+}
+
+// Stores of points, of which each coordinate is in one register.
+template <class D, class V>
+HWY_INLINE void store_points(D d, const std::array<V, 2>& x, hwy::HWY_NAMESPACE::TFromD<D>* out) {
+  hwy::HWY_NAMESPACE::StoreInterleaved2(x[0], x[1], d, out);
+}
+template <class D, class V>
+HWY_INLINE void store_points(D d, const std::array<V, 4>& x, hwy::HWY_NAMESPACE::TFromD<D>* out) {
+  hwy::HWY_NAMESPACE::StoreInterleaved4(x[0], x[1], x[2], x[3], d, out);
+}
+
+template <class D, class V>
+HWY_INLINE void store_points(D d, const std::array<V, 3>& x, hwy::HWY_NAMESPACE::TFromD<D>* out) {
+  hwy::HWY_NAMESPACE::StoreInterleaved3(x[0], x[1], x[2], d, out);
+}
+
+#if HWY_TARGET <= HWY_AVX3
+
+/// Lanes of the three registers of points with coordinates x, y and z. Lanes of the second operand count from `Lanes`.
+/// First those of x and y are chosen (`xy`), then those of the result and of z (`xyz`).
+template <int Lanes>
+struct ThreeInterleaved {
+  alignas(64) std::array<std::array<int, Lanes>, 3> xy{}, xyz{};
+  constexpr ThreeInterleaved() {
+    for (int i = 0; i < 3 * Lanes; ++i) {
+      const int point = i / 3, axis = i % 3, lane = i % Lanes;
+      xy[i / Lanes][lane] = axis == 1 ? Lanes + point : point;
+      xyz[i / Lanes][lane] = axis == 2 ? Lanes + point : lane;
+    }
+  }
+};
+
+inline constexpr ThreeInterleaved<8> kThree8;
+inline constexpr ThreeInterleaved<16> kThree16;
+
+// Two permutations for each register. Highway's function takes more than three times as many instructions.
+HWY_INLINE void store_points(hwy::HWY_NAMESPACE::Full512<float> /*d*/,
+                             const std::array<hwy::HWY_NAMESPACE::Vec512<float>, 3>& x, float* out) {
+  for (std::size_t r = 0; r < 3; ++r) {
+    const __m512 xy = _mm512_permutex2var_ps(x[0].raw, _mm512_load_si512(kThree16.xy[r].data()), x[1].raw);
+    _mm512_storeu_ps(out + 16 * r, _mm512_permutex2var_ps(xy, _mm512_load_si512(kThree16.xyz[r].data()), x[2].raw));
+  }
+}
+HWY_INLINE void store_points(hwy::HWY_NAMESPACE::Full256<float> /*d*/,
+                             const std::array<hwy::HWY_NAMESPACE::Vec256<float>, 3>& x, float* out) {
+  const auto lanes = [](const std::array<int, 8>& from)
+                         HWY_ATTR { return _mm256_load_si256(reinterpret_cast<const __m256i*>(from.data())); };
+  for (std::size_t r = 0; r < 3; ++r) {
+    const __m256 xy = _mm256_permutex2var_ps(x[0].raw, lanes(kThree8.xy[r]), x[1].raw);
+    _mm256_storeu_ps(out + 8 * r, _mm256_permutex2var_ps(xy, lanes(kThree8.xyz[r]), x[2].raw));
+  }
+}
+
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace tegl::detail
+HWY_AFTER_NAMESPACE();
+
+#endif
