@@ -35,26 +35,47 @@ HWY_INLINE double alpha_of(double a, double b, double isovalue, double epsilon) 
   return std::clamp(alpha, epsilon, 1.0 - epsilon) + 0.0;  // never -0, for which instruction sets differ
 }
 
+/// Interpolation parameters of a register of edges.
+class AlphaLanes {
+ public:
+  using Tag = hn::ScalableTag<double>;
+  using Lanes = hn::Vec<Tag>;
+
+  HWY_INLINE AlphaLanes(double isovalue, double epsilon)
+      : isovalue_(isovalue),
+        epsilon_(epsilon),
+        threshold_(hn::Set(Tag(), isovalue)),
+        least_(hn::Set(Tag(), epsilon)),
+        most_(hn::Set(Tag(), 1.0 - epsilon)),
+        finite_(hn::Set(Tag(), std::numeric_limits<double>::max())) {}
+
+  HWY_INLINE void write(Lanes from, Lanes to, double* out) const {
+    const Tag d;
+    const auto difference = hn::Sub(to, from);
+    if (!hn::AllTrue(d, hn::Le(hn::Abs(difference), finite_))) {
+      double start[hn::MaxLanes(d)], end[hn::MaxLanes(d)];
+      hn::StoreU(from, d, start);
+      hn::StoreU(to, d, end);
+      for (std::size_t j = 0; j < hn::Lanes(d); ++j) out[j] = alpha_of(start[j], end[j], isovalue_, epsilon_);
+      return;
+    }
+    const auto alpha = hn::Div(hn::Sub(threshold_, from), difference);
+    hn::StoreU(hn::Add(hn::Min(hn::Max(alpha, least_), most_), hn::Zero(d)), d, out);
+  }
+
+ private:
+  double isovalue_, epsilon_;
+  Lanes threshold_, least_, most_, finite_;
+};
+
 /// Interpolation parameters of some edges from the samples at their ends.
 HWY_INLINE void alphas_of(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
                           double* out) {
-  const hn::ScalableTag<double> d;
+  const AlphaLanes::Tag d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  const auto threshold = hn::Set(d, isovalue);
-  const auto least = hn::Set(d, epsilon);
-  const auto most = hn::Set(d, 1.0 - epsilon);
-  const auto finite = hn::Set(d, std::numeric_limits<double>::max());
+  const AlphaLanes lanes(isovalue, epsilon);
   std::size_t i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    const auto start = hn::LoadU(d, from + i);
-    const auto difference = hn::Sub(hn::LoadU(d, to + i), start);
-    if (!hn::AllTrue(d, hn::Le(hn::Abs(difference), finite))) {
-      for (std::size_t j = i; j < i + kLanes; ++j) out[j] = alpha_of(from[j], to[j], isovalue, epsilon);
-      continue;
-    }
-    const auto alpha = hn::Div(hn::Sub(threshold, start), difference);
-    hn::StoreU(hn::Add(hn::Min(hn::Max(alpha, least), most), hn::Zero(d)), d, out + i);
-  }
+  for (; i + kLanes <= count; i += kLanes) lanes.write(hn::LoadU(d, from + i), hn::LoadU(d, to + i), out + i);
   for (; i < count; ++i) out[i] = alpha_of(from[i], to[i], isovalue, epsilon);
 }
 
@@ -82,6 +103,19 @@ void alphas_of_ends(const double* from, const double* to, std::size_t count, dou
 
 /// Interpolation parameters of all edges of a 4D tile, critical or not.
 void alphas_4d(const double* corners, double isovalue, double epsilon, double* out) {
+  const AlphaLanes::Tag d;
+  const AlphaLanes lanes(isovalue, epsilon);
+#if HWY_TARGET <= HWY_AVX3
+  // The eight edges along an axis are one register. Loads of ends that have just been stored one by one would wait.
+  const auto lower = hn::LoadU(d, corners), upper = hn::LoadU(d, corners + 8);
+  // pairs of corners with y = 0 and with y = 1
+  const AlphaLanes::Lanes front{_mm512_shuffle_f64x2(lower.raw, upper.raw, 0x88)};
+  const AlphaLanes::Lanes back{_mm512_shuffle_f64x2(lower.raw, upper.raw, 0xDD)};
+  lanes.write(hn::ConcatEven(d, upper, lower), hn::ConcatOdd(d, upper, lower), out);
+  lanes.write(front, back, out + 8);
+  lanes.write(hn::ConcatLowerLower(d, upper, lower), hn::ConcatUpperUpper(d, upper, lower), out + 16);
+  lanes.write(lower, upper, out + 24);
+#else
   constexpr unsigned kEdges = tables::edge_count(4);
   double from[kEdges];
   double to[kEdges];
@@ -91,7 +125,9 @@ void alphas_4d(const double* corners, double isovalue, double epsilon, double* o
       from[a * (kEdges / 4) + i] = corners[base];
       to[a * (kEdges / 4) + i] = corners[base | 1u << a];
     }
-  alphas_of(from, to, kEdges, isovalue, epsilon, out);
+  for (std::size_t i = 0; i < kEdges; i += hn::MaxLanes(d))
+    lanes.write(hn::LoadU(d, from + i), hn::LoadU(d, to + i), out + i);
+#endif
 }
 
 /// Interpolation parameters of all edges of cells.
