@@ -22,7 +22,7 @@ struct CollapseGoal {
   /// Only for `collapse_by_quadrics`: contours of at least so many simplices are contracted in parts, at the same time.
   /// Smaller ones are not worth the other order.
   std::size_t least_in_parts = 100'000;
-  /// Called before the first contraction: from then on, one thread does most of the work.
+  /// Called before the first contraction: from then on, one thread does much of the work.
   std::function<void()> ready = {};
 };
 
