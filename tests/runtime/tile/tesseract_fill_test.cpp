@@ -494,13 +494,13 @@ TEST(ResolvedCones, DescribedConesHaveTheAssembledNumbers) {
     own_apexes += cone.own_vertices;
     with_cubes += has_cubes ? 1 : 0;
     for (const bool flip : {false, true}) {
-      using Simplices = std::vector<std::array<Index, 4>>;
-      Simplices expected(cone.simplex_count);
+      using Numbers = std::vector<std::array<Index, 4>>;
+      Numbers expected(cone.simplex_count);
       const Index* const numbers = has_cubes ? of_cubes.data() : nullptr;
       write_numbers({filling.simplices, filling.simplex_count, of_edges.data(), numbers, kOwn, flip}, expected.data());
       for (const std::size_t more : {0, 7, 8, 100}) {
         const std::array<Index, 4> kept = {1, 2, 3, 4};
-        Simplices found(cone.simplex_count + more + 1, kept);
+        Numbers found(cone.simplex_count + more + 1, kept);
         write_cone(
             {&ResolvedCubes::instance(), &lists, cone.simplex_count, cone.apex, of_edges.data(), numbers, kOwn, flip},
             cone.simplex_count + more, found.data());
