@@ -17,7 +17,7 @@
 #include "complex/contour_numbers.hpp"
 #include "complex/point_gradients.hpp"
 #include "facets/split_facets.hpp"
-#include "polytope/prism_facets.hpp"
+#include "polytope/solid_facets.hpp"
 #include "tegl/error.hpp"
 #include "tegl/facet_hierarchy.hpp"
 
@@ -106,7 +106,8 @@ class CellPolygons {
 /// The 3D facets of a 4D cell, and which of them have a vertex of the contour.
 class FacetsOfCell {
  public:
-  using Facets = std::bitset<kPolytopeCorners * 2>;  ///< a polyhedron of C corners has up to 2 C - 4 faces
+  /// A polytope of C corners has up to C (C - 3) / 2 facets (P. McMullen, The maximum numbers of faces, 1970).
+  using Facets = std::bitset<kPolytopeCorners*(kPolytopeCorners - 3) / 2>;
 
   /// The arguments must outlive this object.
   FacetsOfCell(const CellGroups& cells, const VertexKeys& keys) : cells_(cells), keys_(keys) {}
@@ -126,7 +127,7 @@ class FacetsOfCell {
     }
     corners_ = cells_.polytopes.points_of(cell);
     of_corner_.assign(corners_.size(), {});
-    const std::vector<PrismFacet> facets = facets_of_prism(cells_.polytopes.shape(cell));
+    const std::vector<SolidFacet> facets = facets_of_solid(cells_.polytopes.shape(cell));
     for (std::size_t f = 0; f < facets.size(); ++f)
       for (const std::uint8_t v : facets[f].corners) of_corner_[v].set(f);
   }
