@@ -45,12 +45,12 @@ def duoprism():
 
 @pytest.mark.parametrize("triangulation", ["compact", "barycentric"])
 def test_a_ball_in_24_cells_is_a_sphere(triangulation):
-    points, cells = cells24(5)
-    values = 1.7 - np.linalg.norm(points, axis=1)
+    points, cells = cells24(9)
+    values = 3.7 - np.linalg.norm(points, axis=1)
     contour = tegl.contour_mesh(points, {"polytope": cells}, values, 0.0, triangulation=triangulation, dtype=np.float64)
     report = contour.check()
     assert report.is_closed and report.euler == 0 and report.components == 1
-    content = np.pi**2 / 2 * 1.7**4
+    content = np.pi**2 / 2 * 3.7**4
     assert abs(contour.measure().content / content - 1) < 0.15
     cut = contour.slice(axis=3, at=0.1)
     assert cut.check().is_closed and cut.check().euler == 2

@@ -2,12 +2,17 @@
 //
 // Memory for outputs. Fresh memory costs a page fault per page at the first access. With pages of 2 MiB instead of 4
 // KiB this is seven times faster, and several threads can access different parts concurrently.
+#include <algorithm>
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <utility>
 
 #include "base/block_source.hpp"
+#include "base/kept_pages.hpp"
 #include "tegl/memory.hpp"
 
 #ifdef __linux__
@@ -48,6 +53,70 @@ void prefer_huge_pages(void* begin, std::size_t bytes) noexcept {
   static_cast<void>(bytes);
 #endif
 }
+
+#ifdef __linux__
+
+/// See KeptPages. Blocks consist of huge pages.
+class PagePool {
+ public:
+  void open(std::size_t most) {
+    const std::lock_guard lock(mutex_);
+    most_ = std::max(most_, most);
+    users_.fetch_add(1, std::memory_order_relaxed);
+  }
+  void close() {
+    const std::lock_guard lock(mutex_);
+    if (users_.fetch_sub(1, std::memory_order_relaxed) > 1) return;
+    while (count_ > 0) {
+      --count_;
+      munmap(blocks_[count_].begin, blocks_[count_].bytes);
+    }
+    kept_ = most_ = 0;
+  }
+
+  /// Keeps a block; returns false if it does not.
+  bool keep(void* block, std::size_t bytes) noexcept {
+    if (!is_open()) return false;
+    const std::lock_guard lock(mutex_);
+    if (!is_open() || count_ == blocks_.size() || kept_ + bytes > most_) return false;
+    blocks_[count_++] = {static_cast<unsigned char*>(block), bytes};
+    kept_ += bytes;
+    return true;
+  }
+
+  /// Replaces the first pages of a fresh block by those that are kept, one by one: a block may consist of parts that
+  /// the system moves only by themselves.
+  void move_to(unsigned char* block, std::size_t bytes) noexcept {
+    if (!is_open()) return;
+    const std::lock_guard lock(mutex_);
+    for (std::size_t moved = 0; moved < bytes && count_ > 0; moved += kHugePage) {
+      Block& from = blocks_[count_ - 1];
+      from.bytes -= kHugePage;
+      kept_ -= kHugePage;
+      if (from.bytes == 0) --count_;
+      unsigned char* const page = from.begin + from.bytes;
+      if (mremap(page, kHugePage, kHugePage, MREMAP_MAYMOVE | MREMAP_FIXED, block + moved) == MAP_FAILED)
+        munmap(page, kHugePage);  // the fresh page stays
+    }
+  }
+
+ private:
+  struct Block {
+    unsigned char* begin;
+    std::size_t bytes;
+  };
+  [[nodiscard]] bool is_open() const { return users_.load(std::memory_order_relaxed) != 0; }
+
+  std::mutex mutex_;
+  std::atomic<unsigned> users_ = 0;
+  std::array<Block, 64> blocks_{};
+  std::size_t count_ = 0;
+  std::size_t kept_ = 0;  ///< bytes in the blocks
+  std::size_t most_ = 0;
+};
+constinit PagePool page_pool;
+
+#endif
 
 void free_block(void* block, std::size_t bytes) noexcept {
   if (block_source != nullptr && block_source->release(block, bytes)) return;
@@ -109,10 +178,17 @@ void* allocate_large_block(std::size_t bytes) {
   if (before != 0) munmap(begin, before);
   if (before != kHugePage) munmap(begin + before + rounded(bytes), kHugePage - before);
   madvise(begin + before, rounded(bytes), MADV_HUGEPAGE);  // without huge pages, small ones are used
+  page_pool.move_to(begin + before, rounded(bytes));
   return begin + before;
 }
 
-void free_large_block(void* block, std::size_t bytes) noexcept { free_block(block, rounded(bytes)); }
+void free_large_block(void* block, std::size_t bytes) noexcept {
+  if (block_source == nullptr && page_pool.keep(block, rounded(bytes))) return;
+  free_block(block, rounded(bytes));
+}
+
+KeptPages::KeptPages(std::size_t most) { page_pool.open(most); }
+KeptPages::~KeptPages() { page_pool.close(); }
 
 #else
 
@@ -121,6 +197,9 @@ constexpr std::align_val_t kLargeAlignment{4096};
 
 void* allocate_large_block(std::size_t bytes) { return ::operator new(bytes, kLargeAlignment); }
 void free_large_block(void* block, std::size_t) noexcept { ::operator delete(block, kLargeAlignment); }
+
+KeptPages::KeptPages(std::size_t) {}
+KeptPages::~KeptPages() = default;
 
 #endif
 

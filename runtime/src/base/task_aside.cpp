@@ -11,6 +11,8 @@
 
 #include <tbb/task_arena.h>
 
+#include "base/plain_threads.hpp"
+
 namespace tegl::detail {
 
 struct TaskAside::State {
@@ -43,9 +45,14 @@ TaskAside::~TaskAside() {
 void TaskAside::begin() {
   state_->claimed = false;  // what this thread wrote before is seen by the one that claims the task
   // The state is shared: the other thread may come when this object is gone, and then finds the task claimed.
-  state_->arena.enqueue([state = state_] {
+  const auto take = [state = state_] {
     if (state->claim()) state->run();
-  });
+  };
+#ifdef TEGL_PLAIN_THREADS
+  std::thread(take).detach();
+#else
+  state_->arena.enqueue(take);
+#endif
 }
 
 void TaskAside::finish() {

@@ -14,15 +14,8 @@
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
 
-// The thread sanitizer does not see the synchronisation of the installed TBB, which is not built for it. With the
-// sanitizer, plain threads do the same work in the same parts.
-#ifdef __SANITIZE_THREAD__
-#define TEGL_PLAIN_THREADS
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define TEGL_PLAIN_THREADS
-#endif
-#endif
+#include "base/plain_threads.hpp"
+
 #ifdef TEGL_PLAIN_THREADS
 #include <exception>
 #endif

@@ -25,7 +25,9 @@ template <int N>
 class RowNormals {
  public:
   using Index = std::array<std::size_t, N>;
-  static constexpr std::size_t kMostSamples = 4096;  ///< of a row
+  /// Longest row. Several rows are kept, so longer ones would leave the cache next to the core: in 3D, the gradients of
+  /// 4096 samples take 4 x 3 x 16 KiB.
+  static constexpr std::size_t kMostSamples = 4096;
 
   /// Whether the normals of an image can be computed here.
   static bool suits(const EdgeCrossings<N>& source, const NormalWriter<N, float>& writer,

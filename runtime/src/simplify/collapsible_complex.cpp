@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@ namespace tegl::detail {
 namespace {
 
 constexpr std::size_t kBorderBlock = 4096;
+constexpr std::size_t kStarBlock = std::size_t{1} << 16;  ///< entries of larger stars that a thread takes at a time
 
 template <std::size_t N>
 int position(const std::array<Index, N>& simplex, Index v) {
@@ -64,15 +66,14 @@ void CollapsibleComplex<N>::fill_stars(std::size_t vertex_count, const Progress&
         ++star_of_[v].capacity;
       }
   });
-  std::size_t first = 0;
+  stars_.resize(N * simplices_.size());
+  Index* first = stars_.data();
   for (Star& star : star_of_) {
     star.first = first;
     first += star.capacity;
   }
-  stars_.reserve(2 * first);  // contractions append larger stars
-  stars_.resize(first);
   for (Index s = 0; s < simplices_.size(); ++s)
-    for (const Index v : simplices_[s]) stars_[star_of_[v].first + star_of_[v].size++] = s;
+    for (const Index v : simplices_[s]) star_of_[v].first[star_of_[v].size++] = s;
 }
 
 /// The number of simplices with the face of s opposite to a corner.
@@ -142,10 +143,9 @@ void CollapsibleComplex<N>::find_border(unsigned threads, const Progress& progre
 template <int N>
 std::span<const Index> CollapsibleComplex<N>::clean_star(Index v) {
   Star& star = star_of_[v];
-  Index* const first = stars_.data() + star.first;
-  star.size =
-      static_cast<Index>(std::remove_if(first, first + star.size, [&](Index s) { return !is_alive(s); }) - first);
-  return {first, star.size};
+  const auto end = std::remove_if(star.first, star.first + star.size, [&](Index s) { return !is_alive(s); });
+  star.size = static_cast<Index>(end - star.first);
+  return {star.first, star.size};
 }
 
 template <int N>
@@ -155,7 +155,7 @@ void CollapsibleComplex<N>::request(Index v, Ahead step) const {
   if (step == Ahead::place) {
     hwy::Prefetch(&star);
   } else if (step == Ahead::star) {
-    for (std::size_t i = 0; i < star.size; i += kPerLine) hwy::Prefetch(stars_.data() + star.first + i);
+    for (std::size_t i = 0; i < star.size; i += kPerLine) hwy::Prefetch(star.first + i);
   } else {
     visit_star(v, [&](Index s) { hwy::Prefetch(&simplices_[s]); });
   }
@@ -175,19 +175,27 @@ void CollapsibleComplex<N>::neighbours(Index v, std::vector<Index>& result) {
 
 /// The star of u after v was merged into it, in the part of either vertex if it is large enough.
 template <int N>
-void CollapsibleComplex<N>::set_star(Index u, Index v, const Edge& edge) {
+void CollapsibleComplex<N>::set_star(Index u, Index v, const Edge& edge, Scratch& scratch) {
   const auto size = static_cast<Index>(edge.only_u.size() + edge.only_v.size());
   Star& star = star_of_[u];
   if (star.capacity < size && star_of_[v].capacity > star.capacity) std::swap(star, star_of_[v]);
-  if (star.capacity < size) {
-    star.first = stars_.size();
-    star.capacity = size;
-    stars_.resize(stars_.size() + size);
-  }
+  if (star.capacity < size) star = {take_star(size, scratch), 0, size};
   star.size = size;
-  const auto first = stars_.begin() + static_cast<std::ptrdiff_t>(star.first);
-  std::copy(edge.only_v.begin(), edge.only_v.end(), std::copy(edge.only_u.begin(), edge.only_u.end(), first));
+  std::copy(edge.only_v.begin(), edge.only_v.end(), std::copy(edge.only_u.begin(), edge.only_u.end(), star.first));
   star_of_[v].size = 0;
+}
+
+/// Memory for a star.
+template <int N>
+Index* CollapsibleComplex<N>::take_star(std::size_t size, Scratch& scratch) {
+  if (scratch.left_ < size) {
+    scratch.left_ = std::max(size, kStarBlock);
+    const std::lock_guard lock(larger_stars_->mutex);
+    larger_stars_->blocks.push_back(std::make_unique_for_overwrite<Index[]>(scratch.left_));
+    scratch.stars_ = larger_stars_->blocks.back().get();
+  }
+  scratch.left_ -= size;
+  return std::exchange(scratch.stars_, scratch.stars_ + size);
 }
 
 template <int N>
@@ -246,16 +254,17 @@ void CollapsibleComplex<N>::visit_edge_link(const Edge& edge, const Visit& visit
 }
 
 template <int N>
-bool CollapsibleComplex<N>::is_contractible(const Edge& edge) {
+bool CollapsibleComplex<N>::is_contractible(const Edge& edge, Scratch& scratch) const {
   if (edge.only_u.empty() && edge.only_v.empty()) return false;
   const auto cone = static_cast<Index>(star_of_.size());
-  links_.clear(N * (edge.only_u.size() + edge.only_v.size() + edge.both.size()) + 1);
+  LinkCondition<N>& links = scratch.links_;
+  links.clear(N * (edge.only_u.size() + edge.only_v.size() + edge.both.size()) + 1);
   visit_edge_link(edge, [&](Face face, Index omitted) {
     if (omitted == edge.u || omitted == edge.v) return;
     std::replace(face.begin(), face.begin() + (N - 2), omitted, cone);
-    links_.add_to_uv(face);
+    links.add_to_uv(face);
   });
-  links_.complete_uv();
+  links.complete_uv();
   // Border faces that contain one end only: their cones are in the link of that end and do not contain the other one.
   const auto visit_cones = [&](Index other_end, const auto& visit) {
     bool holds = true;
@@ -266,10 +275,10 @@ bool CollapsibleComplex<N>::is_contractible(const Edge& edge) {
     return holds;
   };
   const auto add_to_u = [&](const Face& face) {
-    links_.add_to_u(face);
+    links.add_to_u(face);
     return true;
   };
-  const auto add_to_v = [&](const Face& face) { return links_.add_to_v(face); };
+  const auto add_to_v = [&](const Face& face) { return links.add_to_v(face); };
   const bool has_border = on_border(edge.u) || on_border(edge.v);
   visit_link(edge.only_u, edge.u, add_to_u);
   if (has_border) visit_cones(edge.v, add_to_u);
@@ -294,7 +303,7 @@ void CollapsibleComplex<N>::open_face(std::span<const Index> star, Index s, Inde
 }
 
 template <int N>
-void CollapsibleComplex<N>::contract(const Edge& edge) {
+void CollapsibleComplex<N>::contract(const Edge& edge, Scratch& scratch) {
   const bool has_border = on_border(edge.u) || on_border(edge.v);
   for (const Index s : edge.both) {
     if (!has_border) break;
@@ -307,10 +316,10 @@ void CollapsibleComplex<N>::contract(const Edge& edge) {
   }
   // remove the simplices at the edge
   for (const Index s : edge.both) simplices_[s].fill(kNone);
-  alive_ -= edge.both.size();
+  std::atomic_ref(alive_).fetch_sub(edge.both.size(), std::memory_order_relaxed);
   // attach the other simplices of v to u
   for (const Index s : edge.only_v) simplices_[s][static_cast<std::size_t>(position(simplices_[s], edge.v))] = edge.u;
-  set_star(edge.u, edge.v, edge);
+  set_star(edge.u, edge.v, edge, scratch);
   if (border_vertex_[edge.v] != 0) border_vertex_[edge.u] = 1;
 }
 

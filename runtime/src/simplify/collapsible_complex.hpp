@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -86,15 +87,24 @@ class CollapsibleComplex {
   template <class Visit>
   void visit_star(Index v, const Visit& visit) const {
     const Star& star = star_of_[v];
-    for (std::size_t i = 0; i < star.size; ++i) visit(stars_[star.first + i]);
+    for (std::size_t i = 0; i < star.size; ++i) visit(star.first[i]);
   }
+
+  // Threads may load, test and contract edges of different ContourParts at the same time, each with its own scratch.
 
   /// Fills `edge`. u and v have to differ.
   void load(Index u, Index v, Edge& edge);
+  /// Working storage of a thread that contracts edges.
+  class Scratch {
+    friend class CollapsibleComplex;
+    LinkCondition<N> links_;
+    Index* stars_ = nullptr;  ///< memory for further stars
+    std::size_t left_ = 0;    ///< entries of it
+  };
   /// Whether contracting the edge preserves the topology of the manifold.
-  bool is_contractible(const Edge& edge);
+  bool is_contractible(const Edge& edge, Scratch& scratch) const;
   /// Moves v to u. The edge has to be contractible.
-  void contract(const Edge& edge);
+  void contract(const Edge& edge, Scratch& scratch);
 
  private:
   using Face = typename LinkCondition<N>::Face;
@@ -113,24 +123,29 @@ class CollapsibleComplex {
   Buffer<Simplex> simplices_;
   std::vector<std::uint8_t> border_faces_;
   std::vector<std::uint8_t> border_vertex_;  ///< 1: on the border
-  /// A part of stars_. The first `size` of `capacity` entries are used.
+  /// The first `size` of `capacity` entries are used.
   struct Star {
-    std::size_t first = 0;
+    Index* first = nullptr;
     Index size = 0;
     Index capacity = 0;
   };
   /// The simplices of the star, without those removed since.
   [[nodiscard]] std::span<const Index> clean_star(Index v);
-  void set_star(Index u, Index v, const Edge& edge);
+  void set_star(Index u, Index v, const Edge& edge, Scratch& scratch);
+  Index* take_star(std::size_t size, Scratch& scratch);
 
   Buffer<Star> star_of_;  ///< by vertex
-  Buffer<Index> stars_;   ///< simplices, vertex by vertex
+  Buffer<Index> stars_;   ///< simplices, vertex by vertex, before the first contraction
+  /// Stars that contractions made larger. Threads take memory of several at a time.
+  struct LargerStars {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Index[]>> blocks;
+  };
+  std::unique_ptr<LargerStars> larger_stars_ = std::make_unique<LargerStars>();
   std::size_t alive_ = 0;
   std::shared_ptr<const FacetNeighbours<N>> neighbours_;  ///< until they are taken
 
-  // Scratch.
-  FewVertices few_;
-  LinkCondition<N> links_;
+  FewVertices few_;  ///< scratch of `neighbours`
 };
 
 extern template class CollapsibleComplex<2>;

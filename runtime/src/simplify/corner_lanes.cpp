@@ -5,10 +5,13 @@
 // instruction sets give identical bytes. Coordinates are finite: comparisons of lanes take no account of NaN.
 #include "simplify/corner_lanes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #undef HWY_TARGET_INCLUDE
@@ -46,19 +49,35 @@ HWY_INLINE V square_apart(D d, const CornerLanes<N>& corners, const PointN<N>& c
   return sum;
 }
 
-LongestEdge<N> longest_edge(const CornerLanes<N>& corners) {
-  const D d;
-  // corners 0 to 3 without 1 0 3 2, 2 3 0 1 and 3 2 1 0
-  V beside = hn::Zero(d), across = beside, around = beside;
+/// The squares of the lengths of the edges from each corner, to the corners in the order 1 0 3 2, 2 3 0 1 and 3 2 1 0.
+struct Edges {
+  V beside, across, around;
+};
+HWY_INLINE Edges squares_of_edges(D d, const CornerLanes<N>& corners) {
+  Edges edges{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (int a = 0; a < N; ++a) {
     const V x = hn::Load(d, corners.axes[a].data());
     const V way_beside = hn::Sub(x, hn::Shuffle01(x)), way_across = hn::Sub(x, hn::SwapAdjacentBlocks(x)),
             way_around = hn::Sub(x, hn::Reverse(d, x));
-    beside = hn::Add(beside, hn::Mul(way_beside, way_beside));
-    across = hn::Add(across, hn::Mul(way_across, way_across));
-    around = hn::Add(around, hn::Mul(way_around, way_around));
+    edges.beside = hn::Add(edges.beside, hn::Mul(way_beside, way_beside));
+    edges.across = hn::Add(edges.across, hn::Mul(way_across, way_across));
+    edges.around = hn::Add(edges.around, hn::Mul(way_around, way_around));
   }
-  const V most = hn::MaxOfLanes(d, hn::Max(hn::Max(beside, across), around));
+  return edges;
+}
+HWY_INLINE V largest_of(D d, const Edges& edges) {
+  return hn::MaxOfLanes(d, hn::Max(hn::Max(edges.beside, edges.across), edges.around));
+}
+
+double square_of_edge(const CornerLanes<N>& corners) {
+  const D d;
+  return hn::GetLane(largest_of(d, squares_of_edges(d, corners)));
+}
+
+/// Sets `edge` without the squares, which it returns.
+HWY_INLINE V longest_edge(D d, const CornerLanes<N>& corners, LongestEdge<N>& edge) {
+  const auto [beside, across, around] = squares_of_edges(d, corners);
+  const V most = largest_of(d, {beside, across, around});
   // the first longest one of the edges 1 0, 2 0, 2 1, 3 0, 3 1, 3 2
   const unsigned in_beside = equal_lanes(d, beside, most), in_across = equal_lanes(d, across, most),
                  in_around = equal_lanes(d, around, most);
@@ -66,7 +85,6 @@ LongestEdge<N> longest_edge(const CornerLanes<N>& corners) {
                            (in_across & 2u) << 3 | (in_beside & 4u) << 3;
   constexpr std::array<std::uint8_t, 6> kFirst = {0, 0, 1, 0, 1, 2}, kSecond = {1, 2, 2, 3, 3, 3};
   const int number = std::countr_zero(longest | 1u << 5);
-  LongestEdge<N> edge;
   edge.first = kFirst[number];
   edge.second = kSecond[number];
   edge.square = hn::GetLane(most);
@@ -74,8 +92,46 @@ LongestEdge<N> longest_edge(const CornerLanes<N>& corners) {
     const double from = corners.axes[a][edge.first];
     edge.middle[a] = from + 0.5 * (corners.axes[a][edge.second] - from);
   }
-  hn::StoreU(square_apart(d, corners, edge.middle), d, edge.squares.data());
-  return edge;
+  return square_apart(d, corners, edge.middle);
+}
+
+/// As bound_by_common_point.
+HWY_INLINE double common_point(D d, const CornerLanes<N>& corners, const std::array<double, N>& distances,
+                               const LongestEdge<N>& edge, double limit) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const double length = std::sqrt(edge.square);
+  const double first = distances[edge.first], second = distances[edge.second];
+  if (!(length + first + second <= 2.0 * limit)) return kNone;
+  const double share = length > 0.0 ? std::clamp(0.5 + 0.5 * (second - first) / length, 0.0, 1.0) : 0.5;
+  PointN<N> q = between(corners[edge.first], corners[edge.second], share);
+  const V of_corners = hn::LoadU(d, distances.data());
+  for (int step = 0;; ++step) {
+    const V ways = hn::Sqrt(square_apart(d, corners, q)), sums = hn::Add(ways, of_corners);
+    const V most = hn::MaxOfLanes(d, sums);
+    const double bound = hn::GetLane(most);
+    if (bound <= limit) return bound;
+    if (step == kMostStepsToCommonPoint) return kNone;
+    const int farthest = std::countr_zero(equal_lanes(d, sums, most) | 1u << (N - 1));
+    alignas(32) double way[N];
+    hn::Store(ways, d, way);
+    const double stride = kStrideToCommonPoint * (bound - limit);
+    if (!(stride < way[farthest])) return kNone;
+    q = between(q, corners[farthest], stride / way[farthest]);
+  }
+}
+
+void balls(const CornerLanes<N>& corners, const std::array<double, N>& distances, double limit,
+           CornerBalls<N>& result) {
+  const D d;
+  const V squares = longest_edge(d, corners, result.edge);
+  hn::StoreU(squares, d, result.edge.squares.data());
+  const V least = hn::MinOfLanes(d, squares);
+  result.nearest = std::countr_zero(equal_lanes(d, squares, least) | 1u << (N - 1));
+  result.square_of_middle = hn::GetLane(hn::MaxOfLanes(d, squares));
+  const double square = std::min(result.square_of_middle, result.edge.square * (N - 1) / (2 * N));
+  const double farthest = hn::GetLane(hn::MaxOfLanes(d, hn::LoadU(d, distances.data()))), room = limit - farthest;
+  result.bound = room >= 0.0 && square <= room * room ? std::min(limit, farthest + std::sqrt(square))
+                                                      : common_point(d, corners, distances, result.edge, limit);
 }
 
 bool distances(std::span<const float, 16> row, const CornersN<N>& simplex, const PointN<N>& origin,
@@ -117,7 +173,11 @@ bool distances(std::span<const float, 16> row, const CornersN<N>& simplex, const
 
 #else
 
-LongestEdge<N> longest_edge(const CornerLanes<N>& corners) { return longest_edge_by_corners(corners); }
+double square_of_edge(const CornerLanes<N>& corners) { return longest_edge_by_corners(corners).square; }
+void balls(const CornerLanes<N>& corners, const std::array<double, N>& distances, double limit,
+           CornerBalls<N>& result) {
+  result = balls_by_corners<N>(corners, distances, limit);
+}
 bool distances(std::span<const float, 16>, const CornersN<N>&, const PointN<N>&, const CornerLanes<N>&,
                std::array<double, N>&) {
   return false;
@@ -133,12 +193,19 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-HWY_EXPORT(longest_edge);
+HWY_EXPORT(square_of_edge);
+HWY_EXPORT(balls);
 HWY_EXPORT(distances);
 
 template <>
-LongestEdge<4> longest_edge_of(const CornerLanes<4>& corners) {
-  return HWY_DYNAMIC_DISPATCH(longest_edge)(corners);
+double square_of_longest_edge<4>(const CornerLanes<4>& corners) {
+  return HWY_DYNAMIC_DISPATCH(square_of_edge)(corners);
+}
+template <>
+CornerBalls<4> balls_around<4>(const CornerLanes<4>& corners, const std::array<double, 4>& distances, double limit) {
+  CornerBalls<4> result;
+  HWY_DYNAMIC_DISPATCH(balls)(corners, distances, limit, result);
+  return result;
 }
 bool distances_by_gradients(std::span<const float, 16> row, const CornersN<4>& simplex, const PointN<4>& origin,
                             const CornerLanes<4>& corners, std::array<double, 4>& distances_of_corners) {

@@ -96,7 +96,11 @@ struct DeviationInput {
   const FacetNeighbours<N>& neighbours;  ///< of `to`
   const std::vector<NearPoint>& near;    ///< by vertex of `from`: a point of `to`, the nearest one if it matters
   double enough;                         ///< bounds below it are not refined
-  std::vector<double>& of_to;
+  std::vector<double>& of_to;            ///< empty if it is not returned
+
+  void raise_bound(Index simplex, double bound) const {
+    if (!of_to.empty()) raise(of_to[simplex], bound);
+  }
 };
 
 /// Measures simplices one by one. Use one per thread.
@@ -114,7 +118,7 @@ class SimplexDeviation {
   double bound(Index s, double& least) {
     looseness_ = kLooseness;
     load_size(s);
-    const double few = bound_by_corners(s);
+    const double few = bound_by_corners();
     if (few < kInfinity) return few;
     load_frame(s);
     const double enough = std::max(m_.enough, kEdgeShare * edge_);
@@ -122,7 +126,7 @@ class SimplexDeviation {
     if (walked < kInfinity) return walked;
     const double result = in_parts(enough, kMostParts, least);
     for (const Part& part : parts_)
-      for (const auto& [t, distance] : part.matches) raise(m_.of_to[t], distance);
+      for (const auto& [t, distance] : part.matches) m_.raise_bound(t, distance);
     return result;
   }
 
@@ -160,15 +164,13 @@ class SimplexDeviation {
 
   /// Bounds the distance by those of the corners, for simplices that are not much larger than the distances that need
   /// no closer bound.
-  double bound_by_corners(Index s) {
+  double bound_by_corners() {
     const double rim = kRim * edge_;  // more than rounding errors
     const double limit = m_.enough - rim;
     if (!(edge_ <= kCoarse<N> * limit && nearest_ <= limit)) return kInfinity;
-    typename SimplexWalk<N>::Part whole{m_.from.corners[s], {}, m_.from.simplices[s]};
-    for (int i = 0; i < N; ++i) whole.near[i] = m_.near[whole.vertices[i]];
-    const double result = few_.bound(whole, limit, kFewParts<N>) + rim;
+    const double result = few_.bound(part_, limit, kFewParts<N>) + rim;
     if (result < kInfinity)
-      for (const NearPoint& match : few_.matches()) raise(m_.of_to[match.simplex], match.distance + rim);
+      for (const NearPoint& match : few_.matches()) m_.raise_bound(match.simplex, match.distance + rim);
     return result;
   }
 
@@ -183,14 +185,20 @@ class SimplexDeviation {
     double result = walk_.bound(frame_, without_rim(whole_, kRim), edge_, starts, rough, limit) + rim;
     if (result <= 2.0 * rim)  // identical contours: without the rim the bound is exact up to rounding
       result = walk_.bound(frame_, whole_, edge_, starts, 0.0, 2.0 * rim);
-    if (result < kInfinity) walk_.visit_matches([&](Index t, double distance) { raise(m_.of_to[t], distance + rim); });
+    if (result < kInfinity) walk_.visit_matches([&](Index t, double distance) { m_.raise_bound(t, distance + rim); });
     return result;
   }
 
   void load_size(Index s) {
-    edge_ = longest_edge<N>(m_.from.corners[s]);
+    part_.corners = m_.from.corners[s];
+    part_.vertices = m_.from.simplices[s];
+    edge_ = std::sqrt(square_of_longest_edge<N>(part_.corners));
     nearest_ = 0.0;
-    for (const Index v : m_.from.simplices[s]) nearest_ = std::max(nearest_, m_.near[v].distance);
+    for (int i = 0; i < N; ++i) {
+      const NearPoint& near = m_.near[part_.vertices[i]];
+      part_.set_near(i, near);
+      nearest_ = std::max(nearest_, near.distance);
+    }
   }
 
   void load_frame(Index s) {
@@ -440,6 +448,7 @@ class SimplexDeviation {
 
   const DeviationInput<N>& m_;
   // Current simplex.
+  typename SimplexWalk<N>::Part part_{CornersN<N>{}, {}, {}, {}};
   double edge_ = 0.0;
   double looseness_ = kLooseness;
   double nearest_ = 0.0;  ///< largest known distance of one of its points
@@ -500,7 +509,7 @@ double largest_of_samples(const ScaledSimplices<N>& from, const BoxTree<N>& tree
   for_each_block(count, kGrain, threads, progress, [&](std::size_t, std::size_t first, std::size_t end) {
     double farthest = least;
     const auto sample = [&](const PointN<N>& p, Index guess) {
-      const NearPoint found = walk.approach(p, guess);
+      const NearPoint found = walk.approach_nearly(p, guess);
       if (found.distance > farthest) farthest = std::max(farthest, tree.nearest(p, found.simplex).distance);
     };
     for (std::size_t k = first; k < end; ++k) {
@@ -546,19 +555,22 @@ void measure_all(const ScaledSimplices<N>& from, const DeviationTarget<N>& targe
 
 template <int N>
 Deviation deviation_to(const ScaledSimplices<N>& from, const DeviationTarget<N>& to, double enough,
-                       const WorkOptions& work) {
+                       const DeviationValues& values, const WorkOptions& work) {
   Deviation result;
   result.of_from.assign(from.simplices.size(), 0.0);
-  result.of_to.assign(to.contour.simplices.size(), 0.0);
+  if (values.of_to) result.of_to.assign(to.contour.simplices.size(), 0.0);
   measure_all(from, to, enough, work.threads, work.progress, result);
-  result.of_from = from.in_order_of_contour(result.of_from);
-  result.of_to = to.contour.in_order_of_contour(result.of_to);
+  result.of_from = values.of_from ? from.in_order_of_contour(result.of_from) : std::vector<double>();
+  if (values.of_to) result.of_to = to.contour.in_order_of_contour(result.of_to);
   return result;
 }
 
-template Deviation deviation_to(const ScaledSimplices<2>&, const DeviationTarget<2>&, double, const WorkOptions&);
-template Deviation deviation_to(const ScaledSimplices<3>&, const DeviationTarget<3>&, double, const WorkOptions&);
-template Deviation deviation_to(const ScaledSimplices<4>&, const DeviationTarget<4>&, double, const WorkOptions&);
+template Deviation deviation_to(const ScaledSimplices<2>&, const DeviationTarget<2>&, double, const DeviationValues&,
+                                const WorkOptions&);
+template Deviation deviation_to(const ScaledSimplices<3>&, const DeviationTarget<3>&, double, const DeviationValues&,
+                                const WorkOptions&);
+template Deviation deviation_to(const ScaledSimplices<4>&, const DeviationTarget<4>&, double, const DeviationValues&,
+                                const WorkOptions&);
 
 }  // namespace detail
 
@@ -581,7 +593,7 @@ requires DimensionBetween<N, 2, 4> Deviation deviation(const Contour<N, Real>& f
   }
   const ScaledSimplices<N> scaled_from(from, options.scale), scaled_to(to, options.scale);
   const DeviationTarget<N> target(scaled_to, options.work.threads, part_of(options.work.progress, 0.0, 0.1));
-  return deviation_to(scaled_from, target, options.enough,
+  return deviation_to(scaled_from, target, options.enough, {},
                       {options.work.threads, part_of(options.work.progress, 0.1, 1.0)});
 }
 

@@ -39,9 +39,15 @@ struct DeviationTarget {
   SimplexGradients<N> gradients;
 };
 
+/// Which bounds by simplex are returned.
+struct DeviationValues {
+  bool of_from = true, of_to = true;
+};
+
 /// As `deviation`, with the scale of both contours, neither of which may be empty. `enough`: as in DeviationOptions.
+/// Bounds by simplex that are not in `values` are empty.
 template <int N>
 Deviation deviation_to(const ScaledSimplices<N>& from, const DeviationTarget<N>& to, double enough,
-                       const WorkOptions& work);
+                       const DeviationValues& values, const WorkOptions& work);
 
 }  // namespace tegl::detail

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <tuple>
 #include <vector>
 
@@ -31,70 +32,67 @@ class EdgeBuckets {
     (number > current_ ? buckets_[number] : again_).push_back(entry);
   }
 
-  /// The next entry; null if there is none. `is_current(entry)`: false for entries to skip. `push_late()`: called when
-  /// all loaded entries were taken; may push others. An entry pushed earlier would not have come sooner, so pushes can
-  /// wait until then. The pointer is valid until the next call.
-  template <class IsCurrent, class PushLate>
-  const Entry* next(const IsCurrent& is_current, const PushLate& push_late) {
-    for (;;) {
-      while (position_ < entries_.size()) {
-        const Entry& entry = entries_[position_++];
-        if (is_current(entry)) return &entry;
-      }
-      push_late();
-      if (!refill(is_current)) return nullptr;
-    }
-  }
+  /// Loads the entries of the next bucket, or those pushed to the loaded one or to earlier ones meanwhile. They are
+  /// sorted; none if there are no others. `is_current(entry)`: false for entries to omit. Valid until the next call;
+  /// others may be pushed meanwhile.
   template <class IsCurrent>
-  const Entry* next(const IsCurrent& is_current) {
-    return next(is_current, [] {});
-  }
-
-  /// For each of the steps, calls request(step, entry) for the entries that will come within so many calls of `next`,
-  /// each once.
-  template <std::size_t Count, class Request>
-  void request_ahead(const std::array<std::size_t, Count>& calls, const Request& request) {
-    static_assert(Count <= kMostSteps);
-    for (std::size_t step = 0; step < Count; ++step)
-      for (; requested_[step] < std::min(position_ + calls[step], entries_.size()); ++requested_[step])
-        request(step, entries_[requested_[step]]);
+  std::span<const Entry> load(const IsCurrent& is_current) {
+    do {
+      if (!refill()) return {};
+      std::erase_if(entries_, [&](const Entry& entry) { return !is_current(entry); });
+    } while (entries_.empty());
+    std::sort(entries_.begin(), entries_.end());
+    return entries_;
   }
 
  private:
   /// Keys of a bucket differ by at most a sixteenth: the sign, the exponent and four bits of the fraction.
   static constexpr int kShift = 48;
   static constexpr std::size_t kBuckets = std::size_t{1} << (63 - kShift);
-  static constexpr std::size_t kMostSteps = 4;                        ///< of request_ahead
   static constexpr std::uint64_t kUnsigned = ~std::uint64_t{0} >> 1;  ///< without the sign, which -0.0 has
 
-  /// Loads the entries pushed to the current bucket since it was loaded, or else the next bucket.
-  template <class IsCurrent>
-  bool refill(const IsCurrent& is_current) {
+  bool refill() {
     entries_.clear();
-    position_ = 0;
-    requested_.fill(0);
     if (!again_.empty()) {
       entries_.swap(again_);
-    } else {
-      while (current_ < kBuckets && buckets_[current_].empty()) ++current_;
-      if (current_ == kBuckets) {
-        current_ = 0;
-        return false;
-      }
-      entries_.swap(buckets_[current_]);
-      buckets_[current_] = {};
+      return true;
     }
-    std::erase_if(entries_, [&](const Entry& entry) { return !is_current(entry); });
-    std::sort(entries_.begin(), entries_.end());
+    while (current_ < kBuckets && buckets_[current_].empty()) ++current_;
+    if (current_ == kBuckets) {
+      current_ = 0;
+      return false;
+    }
+    entries_.swap(buckets_[current_]);
+    buckets_[current_] = {};
     return true;
   }
 
   std::vector<std::vector<Entry>> buckets_ = std::vector<std::vector<Entry>>(kBuckets);
   std::size_t current_ = 0;
-  std::vector<Entry> entries_;  ///< of the current bucket, sorted
-  std::size_t position_ = 0;
-  std::array<std::size_t, kMostSteps> requested_{};  ///< by step: entries for which request_ahead was called
-  std::vector<Entry> again_;                         ///< pushed to the current bucket or an earlier one
+  std::vector<Entry> entries_;  ///< loaded
+  std::vector<Entry> again_;    ///< pushed to the current bucket or an earlier one
+};
+
+/// Requests memory for the entries of a list some turns before they are used, in several steps.
+template <std::size_t Steps>
+class EdgesAhead {
+ public:
+  /// `turns`: by step, how many turns before an entry is used. The entries must outlive it.
+  EdgesAhead(std::span<const EdgeBuckets::Entry> entries, const std::array<std::size_t, Steps>& turns)
+      : entries_(entries), turns_(turns) {}
+
+  /// Calls request(step, entry) for the entries up to so many turns after this position, each once.
+  template <class Request>
+  void request(std::size_t position, const Request& request) {
+    for (std::size_t step = 0; step < Steps; ++step)
+      for (; requested_[step] < std::min(position + 1 + turns_[step], entries_.size()); ++requested_[step])
+        request(step, entries_[requested_[step]]);
+  }
+
+ private:
+  std::span<const EdgeBuckets::Entry> entries_;
+  std::array<std::size_t, Steps> turns_;
+  std::array<std::size_t, Steps> requested_{};
 };
 
 }  // namespace tegl::detail

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Placement, shape tests and tolerances of edge contractions.
+// Placement and tolerances of edge contractions.
 //
 // Based on: M. Garland and P. Heckbert, Surface simplification using quadric error metrics, 1997, section 3 (placement,
-// border planes) and section 4.3 (no flips), here in any dimension.
+// border planes), here in any dimension.
 #include "simplify/edge_collapse.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -17,13 +18,6 @@
 namespace tegl::detail {
 namespace {
 
-/// Minimum cosine of the angle by which a normal may turn: 78 degrees.
-constexpr double kLeastCosine = 0.2;
-/// Simplices of at least this shape are accepted whatever the shapes before. Those at or below kFlatShape count as
-/// flat.
-template <int N>
-constexpr double kGoodShape = N == 4 ? 0.01 : 0.05;
-constexpr double kFlatShape = 1e-6;
 /// Weight of a border face relative to its simplex.
 constexpr double kBorderWeight = 10.0;
 /// Maximum distance of a place from the middle of the edge, in edge lengths.
@@ -294,91 +288,6 @@ bool EdgeCollapse<N>::within_tolerance(Index u, Index v, const CollapseTarget<N>
 }
 
 template <int N>
-void EdgeCollapse<N>::load(Index u, Index v) {
-  if (loaded_ && edge_.u == u && edge_.v == v) return;
-  complex_.load(u, v, edge_);
-  loaded_ = true;
-  contractible_.reset();
-  worst_shape_.reset();
-  is_measured_.assign((size_around() + kEdgeLanes - 1) / kEdgeLanes, 0);
-  if (around_.size() < is_measured_.size()) around_.resize(is_measured_.size());
-}
-
-/// Measured only when they are used: many contractions fail at the first simplices.
-template <int N>
-auto EdgeCollapse<N>::around(std::size_t group) -> const SimplexLanes<N>& {
-  SimplexLanes<N>& lanes = around_[group];
-  if (is_measured_[group] != 0) return lanes;
-  is_measured_[group] = 1;
-  const std::size_t of_u = edge_.only_u.size(), of_v = edge_.only_v.size();
-  for (std::size_t k = 0; k < kEdgeLanes; ++k) {
-    const std::size_t i = std::min(group * kEdgeLanes + k, size_around() - 1);  // the last group repeats the last one
-    const Index s = i < of_u ? edge_.only_u[i] : i < of_u + of_v ? edge_.only_v[i - of_u] : edge_.both[i - of_u - of_v];
-    const auto& simplex = complex_.simplex(s);
-    const Index end = i < of_u ? edge_.u : edge_.v;
-    lanes.set(k, corners(s), static_cast<int>(std::find(simplex.begin(), simplex.end(), end) - simplex.begin()));
-  }
-  measure_lanes<N>(lanes);
-  return lanes;
-}
-
-template <int N>
-double EdgeCollapse<N>::worst_shape() {
-  if (!worst_shape_) {
-    worst_shape_ = std::numeric_limits<double>::infinity();
-    for (std::size_t group = 0; group < is_measured_.size(); ++group)
-      for (const double shape : around(group).before.shape) worst_shape_ = std::min(*worst_shape_, shape);
-  }
-  return *worst_shape_;
-}
-
-template <int N>
-PointN<N> EdgeCollapse<N>::normal_around() {
-  PointN<N> sum{};
-  for (std::size_t i = 0; i < size_around(); ++i)
-    for (int a = 0; a < N; ++a) sum[a] += around(i / kEdgeLanes).before.normal[a][i % kEdgeLanes];
-  return sum;
-}
-
-/// Whether a simplex is neither flipped nor degraded when its vertex moves. `after`: its group after that.
-template <int N>
-bool EdgeCollapse<N>::keeps_shape(std::size_t number, const ShapeLanes<N>& after) {
-  const std::size_t k = number % kEdgeLanes;
-  const ShapeLanes<N>& before = around(number / kEdgeLanes).before;
-  // a flat simplex may stay flat if it gets no flatter
-  const bool was_flat = before.shape[k] <= kFlatShape;
-  if (after.shape[k] <= kFlatShape) return was_flat && after.shape[k] >= before.shape[k];
-  // orientation: against the mean normal if it was flat, else against its own
-  const auto normal_of_lane = [&](const ShapeLanes<N>& lanes) {
-    PointN<N> normal;
-    for (int a = 0; a < N; ++a) normal[a] = lanes.normal[a][k];
-    return normal;
-  };
-  const PointN<N> normal = normal_of_lane(after);
-  if (was_flat) {
-    if (!(dot(normal, normal_around()) > 0.0)) return false;
-  } else if (!(dot(normal, normal_of_lane(before)) > kLeastCosine * before.length[k] * after.length[k])) {
-    return false;
-  }
-  // shape: good, or no worse than the worst one around the edge
-  return after.shape[k] >= kGoodShape<N> || after.shape[k] >= worst_shape();
-}
-
-template <int N>
-bool EdgeCollapse<N>::keeps_shapes(const PointN<N>& place) {
-  const std::size_t of_u = edge_.only_u.size(), of_both = of_u + edge_.only_v.size();
-  const auto keep = [&](std::size_t from, std::size_t to) {
-    ShapeLanes<N> after;
-    for (std::size_t i = from; i < to; ++i) {
-      if (i == from || i % kEdgeLanes == 0) move_lanes<N>(around(i / kEdgeLanes), place, after);
-      if (!keeps_shape(i, after)) return false;
-    }
-    return true;
-  };
-  return (place == scaled_[edge_.u] || keep(0, of_u)) && (place == scaled_[edge_.v] || keep(of_u, of_both));
-}
-
-template <int N>
 void EdgeCollapse<N>::blend_carried(Index u, Index v, double share) {
   if (share == 0.0) return;
   for (std::size_t i = 0; i < carried_width_; ++i) {
@@ -388,31 +297,29 @@ void EdgeCollapse<N>::blend_carried(Index u, Index v, double share) {
   }
 }
 
-/// The contraction of edge_, for the search of intersections.
+/// The contraction of an edge, for the search of intersections.
 template <int N>
-typename MovingSimplices<N>::Contraction EdgeCollapse<N>::contraction(const PointN<N>& at) const {
-  return {edge_.u, edge_.v, edge_.only_u, edge_.only_v, edge_.both, at};
+typename MovingSimplices<N>::Contraction EdgeCollapse<N>::contraction(const Edge& edge, const PointN<N>& at) {
+  return {edge.u, edge.v, edge.only_u, edge.only_v, edge.both, at};
 }
 
-/// Whether everything except the tolerance allows the contraction of edge_; the slowest test last.
+/// Whether everything except the tolerance allows the contraction of the loaded edge.
 template <int N>
-bool EdgeCollapse<N>::is_possible(const CollapseTarget<N>& target) {
-  if (edge_.both.empty() || contractible_ == false || !keeps_shapes(to_scaled(target.at))) return false;
-  if (!contractible_) contractible_ = complex_.is_contractible(edge_);
-  return *contractible_ && (!embedded_ || embedded_->stay_apart(contraction(target.at)));
+bool EdgeCollapse<N>::is_possible(const CollapseTarget<N>& target, LoadedEdge<N>& loaded) {
+  return loaded.is_contractible(to_scaled(target.at)) &&
+         (!embedded_ || embedded_->stay_apart(contraction(loaded.edge(), target.at)));
 }
 
 template <int N>
-bool EdgeCollapse<N>::try_contract(Index u, Index v, const CollapseTarget<N>& target) {
+bool EdgeCollapse<N>::try_contract(Index u, Index v, const CollapseTarget<N>& target, LoadedEdge<N>& loaded) {
   if (!within_tolerance(u, v, target)) {
-    note_limit(u, v, target);
+    note_limit(u, v, target, loaded);
     return false;
   }
-  load(u, v);
-  if (!is_possible(target)) return false;
-  loaded_ = false;
-  if (embedded_) embedded_->contract(contraction(target.at));
-  complex_.contract(edge_);
+  loaded.load(complex_, scaled_, u, v);
+  if (!is_possible(target, loaded)) return false;
+  if (embedded_) embedded_->contract(contraction(loaded.edge(), target.at));
+  loaded.contract();
   points_[u] = target.at;
   scaled_[u] = to_scaled(target.at);
   quadrics_[u] += quadrics_[v];
@@ -426,10 +333,11 @@ bool EdgeCollapse<N>::try_contract(Index u, Index v, const CollapseTarget<N>& ta
 }
 
 template <int N>
-void EdgeCollapse<N>::note_limit(Index u, Index v, const CollapseTarget<N>& target) {
-  if (limited_) return;
-  load(u, v);
-  limited_ = is_possible(target);
+void EdgeCollapse<N>::note_limit(Index u, Index v, const CollapseTarget<N>& target, LoadedEdge<N>& loaded) {
+  const std::atomic_ref<bool> limited(limited_);
+  if (limited.load(std::memory_order_relaxed)) return;
+  loaded.load(complex_, scaled_, u, v);
+  if (is_possible(target, loaded)) limited.store(true, std::memory_order_relaxed);
 }
 
 template <int N>

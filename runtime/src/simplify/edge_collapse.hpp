@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A contour that shrinks by edge collapse: placement of the merged vertex, tests of the simplices around it, and
-// attributes of vertices. The order of contractions is in simplify_orders.hpp.
+// A contour that shrinks by edge collapse: placement of the merged vertex, tolerances, and attributes of vertices.
+// Tests of the simplices around it are in loaded_edge.hpp. The order of contractions is in simplify_orders.hpp.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 #include "intersect/moving_simplices.hpp"
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/collapsible_complex.hpp"
-#include "simplify/edge_lanes.hpp"
+#include "simplify/loaded_edge.hpp"
 #include "simplify/quadric.hpp"
 #include "tegl/error.hpp"
 #include "tegl/work.hpp"
@@ -95,11 +95,15 @@ class EdgeCollapse {
   /// Requests what costs_around reads of a vertex.
   void request_cost(Index v) const;
   /// Contracts u v into u, at `target`, if manifold, shape, tolerance and (if requested) the other simplices allow it.
-  bool try_contract(Index u, Index v, const CollapseTarget<N>& target);
+  /// Threads may call it at the same time, each with its own `loaded`, for edges in different ContourParts, unless
+  /// intersections are refused. `loaded` must not hold an edge from before the last contraction by another object.
+  bool try_contract(Index u, Index v, const CollapseTarget<N>& target, LoadedEdge<N>& loaded);
   /// Call it for a contraction that a limit forbids, such as the tolerance. If everything else allows the contraction,
-  /// is_limited() is true from then on.
-  void note_limit(Index u, Index v, const CollapseTarget<N>& target);
+  /// is_limited() is true from then on. Threads: as try_contract.
+  void note_limit(Index u, Index v, const CollapseTarget<N>& target, LoadedEdge<N>& loaded);
   [[nodiscard]] bool is_limited() const noexcept { return limited_; }
+  /// Whether contractions that would make simplices intersect are refused.
+  [[nodiscard]] bool keeps_embedded() const noexcept { return embedded_ != nullptr; }
 
   /// Scaled corners of a simplex.
   [[nodiscard]] CornersN<N> corners(Index s) const;
@@ -109,20 +113,9 @@ class EdgeCollapse {
  private:
   void add_quadrics(const Progress& progress);
   void add_border_quadrics(Index s, const CornersN<N>& corners, double weight);
-  /// Loads the edge, unless it is loaded already and nothing was contracted since.
-  void load(Index u, Index v);
-  [[nodiscard]] bool is_possible(const CollapseTarget<N>& target);
-  [[nodiscard]] typename MovingSimplices<N>::Contraction contraction(const PointN<N>& at) const;
+  [[nodiscard]] bool is_possible(const CollapseTarget<N>& target, LoadedEdge<N>& loaded);
+  [[nodiscard]] static typename MovingSimplices<N>::Contraction contraction(const Edge& edge, const PointN<N>& at);
   [[nodiscard]] bool within_tolerance(Index u, Index v, const CollapseTarget<N>& target) const;
-  [[nodiscard]] bool keeps_shapes(const PointN<N>& place);
-  [[nodiscard]] bool keeps_shape(std::size_t number, const ShapeLanes<N>& after);
-  /// Simplices around the loaded edge before the contraction, kEdgeLanes in each group: only_u, only_v, both.
-  const SimplexLanes<N>& around(std::size_t group);
-  [[nodiscard]] std::size_t size_around() const {
-    return edge_.only_u.size() + edge_.only_v.size() + edge_.both.size();
-  }
-  [[nodiscard]] double worst_shape();
-  [[nodiscard]] PointN<N> normal_around();
   [[nodiscard]] PointN<N> to_scaled(const PointN<N>& point) const;
   [[nodiscard]] PointN<N> from_scaled(const PointN<N>& point) const;
   [[nodiscard]] PointN<N> rounded(PointN<N> point) const;
@@ -144,13 +137,6 @@ class EdgeCollapse {
   bool single_precision_;
   bool limited_ = false;
   std::unique_ptr<MovingSimplices<N>> embedded_;  ///< in the contour's coordinates; null if intersections are allowed
-  // The loaded edge.
-  Edge edge_;
-  bool loaded_ = false;
-  std::optional<bool> contractible_;  ///< whether the topology allows the contraction, once known
-  std::vector<SimplexLanes<N>> around_;
-  std::vector<std::uint8_t> is_measured_;  ///< by group: whether around_ is set
-  std::optional<double> worst_shape_;
 };
 
 extern template class EdgeCollapse<2>;

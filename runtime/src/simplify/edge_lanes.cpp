@@ -23,6 +23,31 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kEdgeLanes>;
 using V = hn::Vec<D>;
 
+/// The values at several addresses, transposed: result[i][k] = from[k][i].
+template <std::size_t Count>
+HWY_INLINE void transpose(const std::array<const double*, kEdgeLanes>& from, std::array<EdgeLanes, Count>& result) {
+#if HWY_MAX_BYTES >= 32
+  // blocks of 4 x 4
+  constexpr std::size_t kInBlocks = Count / 4 * 4;
+  const hn::FixedTag<double, 4> four;
+  for (std::size_t i = 0; i < kInBlocks; i += 4)
+    for (std::size_t k = 0; k < kEdgeLanes; k += 4) {
+      const auto a = hn::LoadU(four, from[k] + i), b = hn::LoadU(four, from[k + 1] + i),
+                 c = hn::LoadU(four, from[k + 2] + i), d = hn::LoadU(four, from[k + 3] + i);
+      const auto even_ab = hn::InterleaveLower(four, a, b), odd_ab = hn::InterleaveUpper(four, a, b),
+                 even_cd = hn::InterleaveLower(four, c, d), odd_cd = hn::InterleaveUpper(four, c, d);
+      hn::StoreU(hn::ConcatLowerLower(four, even_cd, even_ab), four, &result[i][k]);
+      hn::StoreU(hn::ConcatLowerLower(four, odd_cd, odd_ab), four, &result[i + 1][k]);
+      hn::StoreU(hn::ConcatUpperUpper(four, even_cd, even_ab), four, &result[i + 2][k]);
+      hn::StoreU(hn::ConcatUpperUpper(four, odd_cd, odd_ab), four, &result[i + 3][k]);
+    }
+#else
+  constexpr std::size_t kInBlocks = 0;
+#endif
+  for (std::size_t i = kInBlocks; i < Count; ++i)
+    for (std::size_t k = 0; k < kEdgeLanes; ++k) result[i][k] = from[k][i];
+}
+
 template <int N>
 struct PointV {
   V x[N];
@@ -93,6 +118,7 @@ HWY_INLINE void load_corners(D d, const SimplexLanes<N>& simplices, std::size_t 
 template <int N>
 HWY_INLINE void measure_all(SimplexLanes<N>& simplices) {
   const D d;
+  for (int i = 0; i < N; ++i) transpose<N>(simplices.places[i], simplices.corners[i]);
   for (std::size_t k = 0; k < kEdgeLanes; k += hn::Lanes(d)) {
     PointV<N> corners[N];
     load_corners(d, simplices, k, corners);
@@ -175,10 +201,14 @@ HWY_INLINE void find_targets(const TargetInput<N>& input, TargetLanes<N>& edges)
   const D d;
   const hn::Rebind<float, D> in_single;
   const auto& common = input.quadric.values();
+  alignas(64) std::array<EdgeLanes, Quadric<N>::kValues> quadrics;
+  alignas(64) std::array<EdgeLanes, N> places;
+  transpose<Quadric<N>::kValues>(edges.quadrics, quadrics);
+  transpose<N>(edges.places, places);
   for (std::size_t k = 0; k < kEdgeLanes; k += hn::Lanes(d)) {
     // the quadrics of both ends together
     constexpr int kMatrix = N * (N + 1) / 2;
-    const auto value = [&](int i) { return hn::Add(hn::Set(d, common[i]), hn::Load(d, &edges.quadrics[i][k])); };
+    const auto value = [&](int i) { return hn::Add(hn::Set(d, common[i]), hn::Load(d, &quadrics[i][k])); };
     QuadricV<N> sum;
     for (int i = 0; i < kMatrix; ++i) sum.matrix[i] = value(i);
     for (int i = 0; i < N; ++i) sum.vector[i] = value(kMatrix + i);
@@ -187,7 +217,7 @@ HWY_INLINE void find_targets(const TargetInput<N>& input, TargetLanes<N>& edges)
     const auto other_first = hn::Gt(hn::Load(d, &edges.is_first[k]), hn::Zero(d));
     PointV<N> edge, middle;
     for (int a = 0; a < N; ++a) {
-      const V mine = hn::Set(d, input.place[a]), other = hn::Load(d, &edges.places[a][k]);
+      const V mine = hn::Set(d, input.place[a]), other = hn::Load(d, &places[a][k]);
       const V first = hn::IfThenElse(other_first, other, mine), second = hn::IfThenElse(other_first, mine, other);
       edge.x[a] = hn::Sub(second, first);
       middle.x[a] = hn::Add(first, hn::Mul(hn::Set(d, 0.5), edge.x[a]));
@@ -200,7 +230,7 @@ HWY_INLINE void find_targets(const TargetInput<N>& input, TargetLanes<N>& edges)
     // the cost at the place as it is stored
     for (int a = 0; a < N; ++a) {
       const V scale = hn::Set(d, input.scale[a]), centre = hn::Set(d, input.centre[a]);
-      V place = hn::Add(hn::Div(best.x[a], scale), centre);
+      V place = hn::Add(input.scale[a] == 1.0 ? best.x[a] : hn::Div(best.x[a], scale), centre);
       if (input.single_precision) place = hn::PromoteTo(d, hn::DemoteTo(in_single, place));
       best.x[a] = hn::Mul(hn::Sub(place, centre), scale);
     }

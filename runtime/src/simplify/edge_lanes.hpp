@@ -27,18 +27,15 @@ struct alignas(64) ShapeLanes {
 /// Some simplices, of which one corner moves.
 template <int N>
 struct alignas(64) SimplexLanes {
-  std::array<std::array<EdgeLanes, N>, N> corners;  ///< by corner, then by axis
-  EdgeLanes moving;                                 ///< number of the corner that moves
-  ShapeLanes<N> before;                             ///< set by measure_lanes
+  std::array<std::array<const double*, kEdgeLanes>, N> places;  ///< by corner: until measure_lanes
+  EdgeLanes moving;                                             ///< number of the corner that moves
+  std::array<std::array<EdgeLanes, N>, N> corners;              ///< by corner, then by axis; set by measure_lanes
+  ShapeLanes<N> before;                                         ///< set by measure_lanes
 
-  void set(std::size_t k, const CornersN<N>& at, int moving_corner) {
-    for (int i = 0; i < N; ++i)
-      for (int a = 0; a < N; ++a) corners[i][a][k] = at[i][a];
-    moving[k] = moving_corner;
-  }
+  void set_corner(std::size_t k, int corner, const PointN<N>& place) { places[corner][k] = place.data(); }
 };
 
-/// Sets `before`.
+/// Sets `corners` and `before`.
 template <int N>
 void measure_lanes(SimplexLanes<N>& simplices);
 /// The shapes after the corners have moved to `place`.
@@ -49,17 +46,17 @@ void move_lanes(const SimplexLanes<N>& simplices, const PointN<N>& place, ShapeL
 /// not be bound to hyperplanes.
 template <int N>
 struct alignas(64) TargetLanes {
-  std::array<EdgeLanes, Quadric<N>::kValues> quadrics;  ///< of the other ends
-  std::array<EdgeLanes, N> places;                      ///< of the other ends
-  EdgeLanes is_first;                                   ///< 1 for other ends with a smaller number, else 0
+  std::array<const double*, kEdgeLanes> quadrics;  ///< of the other ends
+  std::array<const double*, kEdgeLanes> places;    ///< of the other ends
+  EdgeLanes is_first;                              ///< 1 for other ends with a smaller number, else 0
   EdgeLanes cost;
   EdgeLanes square;  ///< of the length
   EdgeLanes is_far;  ///< 1 if the minimum is too far away, or the edge has no length; else 0
 
+  /// The other end of edge k. Both must outlive find_target_lanes.
   void set(std::size_t k, const Quadric<N>& quadric, const PointN<N>& place, bool first) {
-    const auto& values = quadric.values();
-    for (std::size_t i = 0; i < values.size(); ++i) quadrics[i][k] = values[i];
-    for (int a = 0; a < N; ++a) places[a][k] = place[a];
+    quadrics[k] = quadric.values().data();
+    places[k] = place.data();
     is_first[k] = first ? 1.0 : 0.0;
   }
 };

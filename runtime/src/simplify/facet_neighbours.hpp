@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "base/equal_keys.hpp"
 #include "base/workers.hpp"
 #include "mesh/faces_of_stars.hpp"
 #include "mesh/vertex_stars.hpp"
-#include "simplify/equal_keys.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/work.hpp"
 

@@ -47,6 +47,7 @@ class MeasuredContour {
     preparation_->begin();
   }
 
+  /// Bounds by simplex only of the other contour.
   struct Deviations {
     Deviation to_other, from_other;
   };
@@ -59,12 +60,13 @@ class MeasuredContour {
     Deviations result;
     {
       const DeviationTarget<N> target(simplices, work.threads, part_of(work.progress, 0.0, 0.05));
-      result.to_other = deviation_to(*simplices_, target, enough, {work.threads, part_of(work.progress, 0.05, 0.5)});
+      result.to_other = deviation_to(*simplices_, target, enough, {.of_from = false},
+                                     {work.threads, part_of(work.progress, 0.05, 0.5)});
     }
     if (!target_)  // when the memory of the other target is free
       make_target(work.threads, part_of(work.progress, 0.5, 0.55));
     result.from_other = deviation_to(simplices, *target_, enough > 0.0 ? enough : result.to_other.least,
-                                     {work.threads, part_of(work.progress, 0.55, 1.0)});
+                                     {.of_to = false}, {work.threads, part_of(work.progress, 0.55, 1.0)});
     return result;
   }
 

@@ -68,7 +68,9 @@ class SimplexGradients {
   /// The distance of the point from the simplex if its projection is inside, else from a point of the simplex near the
   /// nearest one.
   [[nodiscard]] double distance(Index s, const PointN<N>& p, const Weights& weights) const {
-    const CornersN<N> at = corners_[s];
+    return distance(p, corners_[s], weights);
+  }
+  [[nodiscard]] static double distance(const PointN<N>& p, const CornersN<N>& at, const Weights& weights) {
     for (const float weight : weights.of_corners)  // flat, or very far away
       if (!(std::abs(weight) <= kLargest)) return distance_to_simplex<N>(p, at, N);
     double positive = 0.0;

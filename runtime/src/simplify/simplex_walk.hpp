@@ -22,7 +22,7 @@
 
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/box_tree.hpp"
-#include "simplify/common_point.hpp"
+#include "simplify/corner_lanes.hpp"
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/placed_simplex.hpp"
 #include "simplify/simplex_gradients.hpp"
@@ -52,13 +52,28 @@ class SimplexWalk {
       return PlacedSimplex<N>(corners).place(p).distance;
     });
   }
+  /// The same faster: unless the point is very near, from points that are nearly the nearest ones of their simplices.
+  [[nodiscard]] NearPoint approach_nearly(const PointN<N>& p, Index start) const {
+    return end_of_walk(p, start, [&](Index s, const Weights& weights) {
+      const CornersN<N> corners = to_.corners(s);
+      const double rough = to_.distance(p, corners, weights);
+      return rough > kVeryNear * norm(minus(corners[1], corners[0])) ? rough
+                                                                     : PlacedSimplex<N>(corners).place(p).distance;
+    });
+  }
 
   /// A simplex, and points of the contour near its corners. `vertices`: the numbers of the corners in a contour that
   /// all calls with numbers have in common; kNone for others.
   struct Part {
     CornerLanes<N> corners;
-    std::array<NearPoint, N> near;
+    std::array<double, N> distances;  ///< of the near points from the corners
+    std::array<Index, N> simplices;   ///< of the near points
     std::array<Index, N> vertices;
+
+    void set_near(int corner, const NearPoint& near) {
+      distances[corner] = near.distance;
+      simplices[corner] = near.simplex;
+    }
   };
   static constexpr Index kNone = FacetNeighbours<N>::kNone;
 
@@ -74,9 +89,12 @@ class SimplexWalk {
     };
     for (std::size_t made = 1; !parts_.empty();) {
       Part& next = parts_.back();
-      const Balls balls(next.corners);
-      if (const double bound = bound_by_balls(next, balls, limit); bound <= limit) {
-        for (const NearPoint& corner : next.near) take({bound, corner.simplex});
+      const CornerBalls<N> balls = balls_around<N>(next.corners, next.distances, limit);
+      if (balls.bound <= limit) {
+        for (int i = 0; i < N; ++i)  // each simplex once
+          if (std::find(next.simplices.begin(), next.simplices.begin() + i, next.simplices[i]) ==
+              next.simplices.begin() + i)
+            take({balls.bound, next.simplices[i]});
         parts_.pop_back();
         continue;
       }
@@ -88,7 +106,7 @@ class SimplexWalk {
       NearPoint middle = approach_middle(next, balls);
       // the walk may have missed it: other walks, then a search
       for (int i = 0; i < N && !(middle.distance <= limit); ++i)
-        if (const NearPoint other = approach_roughly(balls.edge.middle, next.near[i].simplex); other.distance <= limit)
+        if (const NearPoint other = approach_roughly(balls.edge.middle, next.simplices[i]); other.distance <= limit)
           middle = other;
       if (!(middle.distance <= limit) && tree_ != nullptr) {
         const auto [distance, simplex] = tree_->nearest(balls.edge.middle, middle.simplex);
@@ -100,10 +118,9 @@ class SimplexWalk {
         continue;
       }
       if (++made > most || !(middle.distance <= limit)) return kFailed;
-      Part half = next;
-      move_corner(half, balls.edge.first, balls.edge.middle, middle);
-      move_corner(next, balls.edge.second, balls.edge.middle, middle);
-      parts_.push_back(half);
+      parts_.push_back(next);  // then next refers to memory that may be gone
+      move_corner(parts_.back(), balls.edge.first, balls.edge.middle, middle);
+      move_corner(*(parts_.end() - 2), balls.edge.second, balls.edge.middle, middle);
     }
     return result;
   }
@@ -114,6 +131,8 @@ class SimplexWalk {
  private:
   static constexpr double kFailed = std::numeric_limits<double>::infinity();
   static constexpr int kMostSteps = 16;
+  /// At distances beyond this share of an edge, errors of weights in single precision hardly matter.
+  static constexpr double kVeryNear = 0.01;
   /// Parts with a radius beyond this multiple of the limit are not compared with one simplex.
   static constexpr double kReach = 1.5;
 
@@ -164,38 +183,8 @@ class SimplexWalk {
 
   static void move_corner(Part& part, int corner, const PointN<N>& to, const NearPoint& near) {
     part.corners.set(corner, to);
-    part.near[corner] = near;
+    part.set_near(corner, near);
     part.vertices[corner] = kNone;
-  }
-  static double farthest_of(const Part& part) {
-    double most = 0.0;
-    for (const NearPoint& point : part.near) most = std::max(most, point.distance);
-    return most;
-  }
-
-  /// Balls around a part. Every point of a simplex is within the radius of the smallest ball around it from one of its
-  /// corners, so at most that plus the largest distance of a corner away from the contour. Jung's theorem bounds the
-  /// radius by the longest edge.
-  struct Balls {
-    explicit Balls(const CornerLanes<N>& part) : edge(longest_edge_of(part)) {
-      const auto [least, most] = std::minmax_element(edge.squares.begin(), edge.squares.end());
-      nearest = static_cast<int>(least - edge.squares.begin());
-      square_of_middle = *most;
-      square = std::min(square_of_middle, edge.square * (N - 1) / (2 * N));
-    }
-    LongestEdge<N> edge;
-    int nearest = 0;          ///< the corner nearest to its middle
-    double square_of_middle;  ///< of the radius of the ball around that
-    double square;            ///< of a radius, at least that of the smallest ball
-  };
-  /// A ball around the corners as a whole, or a common point of balls around each of them; infinity if neither bounds
-  /// the distance by `limit`.
-  [[nodiscard]] static double bound_by_balls(const Part& part, const Balls& balls, double limit) {
-    const double farthest = farthest_of(part);
-    if (is_within(balls.square, limit - farthest)) return std::min(limit, farthest + std::sqrt(balls.square));
-    std::array<double, N> distances;
-    for (int i = 0; i < N; ++i) distances[i] = part.near[i].distance;
-    return bound_by_common_point<N>(part.corners, distances, balls.edge, limit);
   }
 
   /// Whether the root of `square` is at most `room`.
@@ -203,16 +192,16 @@ class SimplexWalk {
 
   /// A point near the middle of the longest edge. The edges of a contour are in several simplices: their middles are
   /// kept, and found in a way that depends on the edge only. So results do not depend on what is kept.
-  [[nodiscard]] NearPoint approach_middle(const Part& part, const Balls& balls) {
+  [[nodiscard]] NearPoint approach_middle(const Part& part, const CornerBalls<N>& balls) {
     int first = balls.edge.first, second = balls.edge.second;
     if (part.vertices[first] == kNone || part.vertices[second] == kNone)
-      return approach_roughly(balls.edge.middle, part.near[balls.nearest].simplex);
+      return approach_roughly(balls.edge.middle, part.simplices[balls.nearest]);
     if (part.vertices[second] < part.vertices[first]) std::swap(first, second);
     const std::uint64_t key = std::uint64_t{part.vertices[first]} << 32 | part.vertices[second];
     if (middles_.empty()) middles_.resize(kKept);
     Middle& kept = middles_[key * kHash >> (64 - kKeptBits)];
     if (kept.edge != key)
-      kept = {key, approach_roughly(between(part.corners[first], part.corners[second], 0.5), part.near[first].simplex)};
+      kept = {key, approach_roughly(between(part.corners[first], part.corners[second], 0.5), part.simplices[first])};
     return kept.near;
   }
 
@@ -222,10 +211,10 @@ class SimplexWalk {
     int most = 1;
     for (int i = 1; i < N; ++i) {
       int times = 1;
-      for (int j = 0; j < i; ++j) times += part.near[j].simplex == part.near[i].simplex;
+      for (int j = 0; j < i; ++j) times += part.simplices[j] == part.simplices[i];
       if (times <= most) continue;
       most = times;
-      match.simplex = part.near[i].simplex;
+      match.simplex = part.simplices[i];
     }
     if (most > 1) match.distance = largest_distance(part, match.simplex);
     return match;
@@ -233,7 +222,8 @@ class SimplexWalk {
 
   /// The simplex near the middle of the longest edge, if the part is within `limit` of it, or else a distance above
   /// `limit`.
-  [[nodiscard]] NearPoint match_of(const Part& part, const Balls& balls, const NearPoint& middle, double limit) const {
+  [[nodiscard]] NearPoint match_of(const Part& part, const CornerBalls<N>& balls, const NearPoint& middle,
+                                   double limit) const {
     if (is_within(balls.square_of_middle, limit - middle.distance))
       return {std::min(limit, middle.distance + std::sqrt(balls.square_of_middle)), middle.simplex};
     if (!is_within(balls.square_of_middle, kReach * limit)) return {kFailed, middle.simplex};
@@ -245,7 +235,7 @@ class SimplexWalk {
     const std::array<double, N> distances = to_.distances(simplex, part.corners);
     double largest = 0.0;
     for (int i = 0; i < N; ++i)
-      largest = std::max(largest, part.near[i].simplex == simplex ? part.near[i].distance : distances[i]);
+      largest = std::max(largest, part.simplices[i] == simplex ? part.distances[i] : distances[i]);
     return largest;
   }
 

@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "base/kept_pages.hpp"
 #include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "mesh/validate.hpp"
@@ -42,6 +43,7 @@ constexpr unsigned kMostRoundsOfStop = 4;
 /// and the factor up to which the result is determined.
 constexpr unsigned kMostTries = 10;
 constexpr double kErrorOfTolerance = 3.0;
+constexpr std::size_t kKeptBytes = 128;        ///< by simplex: memory of one step that is kept for the next one
 constexpr std::size_t kMostSearched = 50'000;  ///< simplices: larger contours take one round with quadrics
 constexpr double kNextError = 1.5;
 constexpr double kPrecision = 1.25;
@@ -94,6 +96,7 @@ class Simplifier {
   }
 
   Simplification<N, double> run() {
+    const KeptPages pages(kKeptBytes * contour_.simplices.size());  // of the round, for the measurement
     stats_.simplices_before = contour_.simplices.size();
     stats_.vertices_before = contour_.vertices.size();
     Contour<N, double> result = contour_.simplices.empty() ? contour_ : run_rounds();

@@ -13,14 +13,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/keyed_queue.hpp"
 #include "base/workers.hpp"
+#include "simplify/contour_parts.hpp"
 #include "simplify/edge_buckets.hpp"
 #include "simplify/few_vertices.hpp"
+#include "simplify/loaded_edge.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -43,10 +48,13 @@ class ProgressReporter {
     count_step(alive);
     return true;
   }
-  /// Counts a step that removes no simplex. Throws Cancelled.
-  void count_step(std::size_t alive) {
-    if (calls_++ % kCallsPerReport == 0) tell(alive);
+  /// Counts steps that remove no simplex, or have removed some. Throws Cancelled.
+  void count_steps(std::size_t alive, std::size_t steps) {
+    const std::size_t before = calls_;
+    calls_ += steps;
+    if (before == 0 || before / kCallsPerReport != calls_ / kCallsPerReport) tell(alive);
   }
+  void count_step(std::size_t alive) { count_steps(alive, 1); }
 
  private:
   void tell(std::size_t alive) {
@@ -71,6 +79,10 @@ class ProgressReporter {
 /// threads. The queue gives no entry of theirs before it loads others, and each edge is computed only in its last
 /// state. One thread computes them at once, while the surroundings of the vertex are in the cache: with the same
 /// result.
+///
+/// Large contours have parts (contour_parts.hpp). Of the loaded entries, first the edges within each part are
+/// contracted, by all threads, then the others. One thread does so in the same order, so the result does not depend on
+/// the number of threads.
 template <int N>
 class QuadricOrder {
  public:
@@ -78,65 +90,168 @@ class QuadricOrder {
       : collapse_(collapse),
         by_mean_(goal.by_mean),
         count_(goal.count),
+        least_entries_(std::min(kLeastEntries, goal.least_in_parts)),
         reporter_(goal, collapse.complex().alive()),
         workers_(goal.threads, [] { return Scratch(); }),
-        waits_(collapse.points().size(), 0) {}
+        waits_(collapse.points().size(), 0) {
+    if (collapse.complex().alive() < goal.least_in_parts || collapse.keeps_embedded()) return;
+    parts_.emplace(collapse.scaled(), [&](const auto& visit) {
+      for (Index s = 0; s < collapse.complex().simplex_count(); ++s)
+        if (collapse.complex().is_alive(s)) visit(collapse.complex().simplex(s));
+    });
+  }
 
   void fill() {
     for (Index v = 0; v < collapse_.points().size(); ++v) let_wait(v);
     if (collapse_.complex().alive() > count_) push_waiting();
   }
   void empty() {
-    const auto is_current = [&](const EdgeBuckets::Entry& entry) { return entry.stamp == stamp(entry.a, entry.b); };
     while (reporter_.continues(collapse_.complex().alive())) {
-      const EdgeBuckets::Entry* next = queue_.next(is_current, [&] { push_waiting(); });
-      if (next == nullptr) return;
-      request_ahead();
-      const auto [u, v, version] = *next;
-      if (!contract(u, v)) continue;
-      let_wait(u);
-      if (workers_.count() == 1) push_waiting();
+      push_waiting();
+      const std::span<const Entry> entries = queue_.load([&](const Entry& entry) { return is_current(entry); });
+      if (entries.empty()) return;
+      for (std::size_t first = 0; first < entries.size() && collapse_.complex().alive() > count_; first += kMostEntries)
+        contract_all(entries.subspan(first, std::min(kMostEntries, entries.size() - first)));
     }
   }
 
  private:
+  using Parts = ContourParts<N>;
+  using Entry = EdgeBuckets::Entry;
+
   /// Vertices whose costs are computed before they are pushed, and those in each part of a thread's work.
   static constexpr std::size_t kChunk = 4096;
   static constexpr std::size_t kGrain = 64;
+  /// Entries that are contracted in parts; progress is reported after at most kMostEntries.
+  static constexpr std::size_t kLeastEntries = 128;
+  static constexpr std::size_t kMostEntries = std::size_t{1} << 15;
+  /// Contractions of several edges at the same time end when so many simplices are left to be removed from each part.
+  static constexpr std::size_t kLeastRemoved = 1024;
 
   struct Pushed {
     double key;
-    EdgeBuckets::Entry entry;
+    Entry entry;
   };
   struct Scratch {
     FewVertices few;
     std::vector<Index> around;
     std::vector<typename EdgeCollapse<N>::EdgeCost> costs;
+    LoadedEdge<N> loaded;
+  };
+  /// The loaded entries of a part.
+  struct PartEntries {
+    std::size_t first = 0, end = 0;  ///< in sorted_
+    std::vector<Index> waiting;      ///< vertices whose costs are to be computed
   };
 
   /// Contracts at the best target, or else at one of the ends.
-  bool contract(Index a, Index b) {
+  bool contract(const Entry& entry, LoadedEdge<N>& loaded) {
+    loaded.drop();
+    const Index a = entry.a, b = entry.b;
     const auto target = collapse_.best_target(a, b);
     if (!target) return false;
-    if (collapse_.try_contract(a, b, *target)) return true;
+    if (collapse_.try_contract(a, b, *target, loaded)) return true;
     auto at_a = collapse_.target_at(a, b, collapse_.points()[a], 0.0);
     auto at_b = collapse_.target_at(a, b, collapse_.points()[b], 1.0);
     if (at_b.cost < at_a.cost) std::swap(at_a, at_b);
     for (const auto& end : {at_a, at_b})
       if (end.share == 0.0 ? collapse_.may_move_to(b, a) : collapse_.may_move_to(a, b))
-        if (collapse_.try_contract(a, b, end)) return true;
+        if (collapse_.try_contract(a, b, end, loaded)) return true;
     return false;
   }
-  /// Requests the memory around the next entries, which lies apart: it arrives while others are contracted.
-  void request_ahead() {
-    using Ahead = typename CollapsibleComplex<N>::Ahead;
-    queue_.request_ahead<4>({8, 6, 4, 2}, [&](std::size_t step, const EdgeBuckets::Entry& entry) {
+
+  /// The memory around the next entries lies apart: it arrives while others are contracted.
+  using Ahead = EdgesAhead<4>;
+  static Ahead ahead_of(std::span<const Entry> entries) { return Ahead(entries, {8, 6, 4, 2}); }
+  void request(Ahead& ahead, std::size_t position) const {
+    using Request = typename CollapsibleComplex<N>::Ahead;
+    ahead.request(position, [&](std::size_t step, const Entry& entry) {
       if (step == 3) return collapse_.request_corners(entry.a, entry.b);
-      collapse_.complex().request(entry.a, static_cast<Ahead>(step));
-      collapse_.complex().request(entry.b, static_cast<Ahead>(step));
+      collapse_.complex().request(entry.a, static_cast<Request>(step));
+      collapse_.complex().request(entry.b, static_cast<Request>(step));
     });
   }
   [[nodiscard]] std::uint32_t stamp(Index a, Index b) const { return collapse_.version(a) + collapse_.version(b); }
+  [[nodiscard]] bool is_current(const Entry& entry) const { return entry.stamp == stamp(entry.a, entry.b); }
+
+  /// Contracts until the goal is reached.
+  void contract_all(std::span<const Entry> entries) {
+    if (const std::size_t most = most_removed_from_part(entries.size()); most > 0)
+      entries = contract_in_parts(entries, most);
+    contract_in_turn(entries);
+  }
+  void contract_in_turn(std::span<const Entry> entries) {
+    Ahead ahead = ahead_of(entries);
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const Entry& entry = entries[i];
+      if (!is_current(entry)) continue;
+      if (!reporter_.continues(collapse_.complex().alive())) return;
+      request(ahead, i);
+      if (!contract(entry, loaded_)) continue;
+      if (parts_) parts_->merge(entry.a, entry.b);
+      let_wait(entry.a);
+      if (workers_.count() == 1) push_waiting();
+    }
+  }
+
+  /// How many simplices may be removed from each part at the same time, without reaching the goal in half of it; 0: one
+  /// edge is contracted after the other.
+  [[nodiscard]] std::size_t most_removed_from_part(std::size_t entries) const {
+    if (!parts_ || entries < least_entries_) return 0;
+    const std::size_t most = (collapse_.complex().alive() - count_) / (2 * Parts::kCount);
+    return most < kLeastRemoved ? 0 : most;
+  }
+
+  /// Contracts the edges within each part. Returns the entries of other edges.
+  std::span<const Entry> contract_in_parts(std::span<const Entry> entries, std::size_t most_removed) {
+    sort_by_part(entries);
+    workers_.for_range(Parts::kCount, 1, [&](std::size_t from, std::size_t to, Scratch& scratch) {
+      const std::size_t first = entries_of_[from].first;
+      Ahead ahead = ahead_of(std::span<const Entry>(sorted_).subspan(first, entries_of_[to - 1].end - first));
+      for (std::size_t part = from; part < to; ++part)
+        contract_part(entries_of_[part], most_removed, scratch.loaded, ahead, first);
+    });
+    std::size_t left = 0, tried = entries_of_[Parts::kCount].first;
+    for (PartEntries& part : entries_of_) {
+      for (const Index v : part.waiting) let_wait(v);
+      part.waiting.clear();
+      for (std::size_t i = part.first; i < part.end; ++i) sorted_[left++] = sorted_[i];
+    }
+    reporter_.count_steps(collapse_.complex().alive(), tried);
+    return std::span<const Entry>(sorted_).first(left);
+  }
+
+  /// Sorts the entries by part; within each, they keep their order.
+  void sort_by_part(std::span<const Entry> entries) {
+    const auto part_of = [&](const Entry& entry) { return parts_->of(entry.a, entry.b); };
+    std::array<std::size_t, Parts::kCount + 2> next{};
+    for (const Entry& entry : entries) ++next[part_of(entry) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (std::size_t part = 0; part <= Parts::kCount; ++part) {
+      entries_of_[part].first = next[part];
+      entries_of_[part].end = next[part + 1];
+    }
+    sorted_.resize(entries.size());
+    for (const Entry& entry : entries) sorted_[next[part_of(entry)]++] = entry;
+  }
+
+  /// Contracts edges within a part, and removes them from its entries. `first`: the entry that `ahead` begins with.
+  void contract_part(PartEntries& part, std::size_t most_removed, LoadedEdge<N>& loaded, Ahead& ahead,
+                     std::size_t first) {
+    for (std::size_t removed = 0; part.first < part.end && removed < most_removed; ++part.first) {
+      const Entry& entry = sorted_[part.first];
+      if (!is_current(entry)) continue;
+      request(ahead, part.first - first);
+      if (!contract(entry, loaded)) continue;
+      removed += loaded.edge().both.size();
+      if (workers_.count() == 1) {
+        let_wait(entry.a);
+        push_waiting();
+      } else {
+        part.waiting.push_back(entry.a);
+      }
+    }
+  }
 
   void let_wait(Index v) {
     if (waits_[v] != 0) return;
@@ -182,9 +297,14 @@ class QuadricOrder {
   EdgeCollapse<N>& collapse_;
   bool by_mean_;
   std::size_t count_;
+  std::size_t least_entries_;  ///< that are contracted in parts
   ProgressReporter reporter_;
   Workers<Scratch> workers_;
   EdgeBuckets queue_;
+  LoadedEdge<N> loaded_;
+  std::optional<Parts> parts_;
+  std::vector<Entry> sorted_;                              ///< the loaded entries, by part
+  std::array<PartEntries, Parts::kCount + 1> entries_of_;  ///< by part; those of no part last
   std::vector<Index> waiting_;
   std::vector<std::uint8_t> waits_;          ///< by vertex: whether it is in waiting_
   std::vector<std::vector<Pushed>> pushed_;  ///< by vertex of a chunk
@@ -267,7 +387,7 @@ class CurvatureOrder {
     if (!target) return CollapsibleComplex<N>::kNone;
     if (target->anchor) std::iter_swap(facet.begin(), std::find(facet.begin(), facet.end(), *target->anchor));
     const auto try_pair = [&](Index u, Index v, double share) {
-      return collapse_.try_contract(u, v, collapse_.target_at(u, v, target->at, target->anchor ? 0.0 : share));
+      return collapse_.try_contract(u, v, collapse_.target_at(u, v, target->at, target->anchor ? 0.0 : share), loaded_);
     };
     for (int i = 0; i < (target->anchor ? 1 : N - 1); ++i)
       for (int j = i + 1; j < N; ++j) {
@@ -287,7 +407,8 @@ class CurvatureOrder {
     if (!target) return;
     const Index u = target->anchor.value_or(facet[0]);
     for (const Index v : facet)
-      if (v != u) collapse_.note_limit(u, v, collapse_.target_at(u, v, target->at, target->anchor ? 0.0 : 0.5));
+      if (v != u)
+        collapse_.note_limit(u, v, collapse_.target_at(u, v, target->at, target->anchor ? 0.0 : 0.5), loaded_);
   }
 
   /// Updates the curvatures of the vertices around `left` and the keys of the facets at `left`.
@@ -304,6 +425,7 @@ class CurvatureOrder {
   KeyedQueue queue_;
   std::vector<double> curvature_;
   std::vector<Index> star_, around_;
+  LoadedEdge<N> loaded_;
 };
 
 // ---- vertices by distance ----
@@ -369,7 +491,7 @@ class DistanceOrder {
         targets_.emplace_back(collapse_.target_at(u, v, collapse_.points()[u], 0.0).cost, u);
     std::sort(targets_.begin(), targets_.end());
     for (const auto& [cost, u] : targets_)
-      if (collapse_.try_contract(u, v, {collapse_.points()[u], 0.0, cost})) return u;
+      if (collapse_.try_contract(u, v, {collapse_.points()[u], 0.0, cost}, loaded_)) return u;
     return CollapsibleComplex<N>::kNone;
   }
 
@@ -377,6 +499,7 @@ class DistanceOrder {
   ProgressReporter reporter_;
   KeyedQueue queue_;
   std::vector<Index> star_, around_;
+  LoadedEdge<N> loaded_;
   std::vector<std::pair<double, Index>> targets_;
 };
 

@@ -105,7 +105,7 @@ class VertexDistances {
     const Index parent = parents_[v];
     if (parent == kUnused) return {};
     const bool known = parent != kNone && parent >= first && parent < v;
-    const NearPoint found = walk_.approach(p, known ? near_[parent].simplex : last);
+    const NearPoint found = walk_.approach_nearly(p, known ? near_[parent].simplex : last);
     // A walk that ends much farther away than the one of the parent has probably missed the nearest point.
     if (known) {
       const double step = norm(minus(p, points_[parent]));

@@ -259,6 +259,35 @@ TEST(Periodic, NormalsUseTheNeighboursAcrossTheSeam) {
   }
 }
 
+/// In float, rows with many edges get their normals from the gradients of all their samples, in double they do not.
+template <int N>
+void expect_float_normals(const std::array<std::size_t, N>& sizes) {
+  const auto image = torus_image<N>(sizes, noise_of<N>(9));
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  for (unsigned axes = 1; axes < 1u << N; ++axes) {
+    SCOPED_TRACE(testing::Message() << N << "D, axes " << axes);
+    const auto got = wrapped<float>(image, periodic_along<N>(axes), 0.0, options);
+    const auto expected = wrapped<double>(image, periodic_along<N>(axes), 0.0, options);
+    ASSERT_EQ(got.normals.size(), expected.normals.size());
+    std::array<std::size_t, N> in_last_cells{};
+    for (std::size_t v = 0; v < got.normals.size(); ++v)
+      for (int a = 0; a < N; ++a) {
+        ASSERT_NEAR(got.normals[v][a], expected.normals[v][a], 1e-3) << "vertex " << v;
+        if (expected.vertices[v][a] > 1.0 - 0.9 / static_cast<double>(sizes[a])) ++in_last_cells[a];
+      }
+    for (unsigned a = 0; a < N; ++a) EXPECT_EQ(in_last_cells[a] != 0, (axes >> a & 1u) != 0);
+  }
+}
+
+TEST(Periodic, NormalsInFloatAreThoseInDouble) {
+  expect_float_normals<2>({70, 11});
+  expect_float_normals<2>({18, 5});
+  expect_float_normals<3>({70, 5, 6});
+  expect_float_normals<3>({17, 9, 4});  // with the repeated sample, the shortest row whose gradients are computed at once
+  expect_float_normals<4>({21, 4, 3, 5});
+}
+
 TEST(Periodic, UnevenAxesHaveTheirOwnStepAcrossTheSeam) {
   // a linear field, apart from the seam, has the same gradient everywhere
   OwnedImage<float, 2> image;

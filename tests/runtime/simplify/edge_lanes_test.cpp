@@ -11,8 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/equal_keys.hpp"
 #include "mesh/simplex_shapes.hpp"
-#include "simplify/equal_keys.hpp"
 #include "simplify/quadric.hpp"
 
 namespace tegl::detail {
@@ -50,7 +50,8 @@ TYPED_TEST(Lanes, ShapesAreThoseOfSingleSimplices) {
       for (PointN<N>& corner : all[k]) corner = any_point<N>(random);
       if (trial % 5 == 0) all[k].fill(all[k][0]);  // no extent
       moving[k] = static_cast<int>(random() % N);
-      lanes.set(k, all[k], moving[k]);
+      lanes.moving[k] = moving[k];
+      for (int i = 0; i < N; ++i) lanes.set_corner(k, i, all[k][i]);
     }
     const PointN<N> place = any_point<N>(random);
     ShapeLanes<N> after;

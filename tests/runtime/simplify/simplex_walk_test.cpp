@@ -17,7 +17,7 @@
 #include "fields.hpp"
 #include "only_targets.hpp"
 #include "simplify/box_tree.hpp"
-#include "simplify/common_point.hpp"
+#include "simplify/corner_lanes.hpp"
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/vertex_distances.hpp"
 #include "tegl/extract.hpp"
@@ -175,26 +175,40 @@ TYPED_TEST(Walk, DistancesOfAllCornersAreThoseOfEach) {
   });
 }
 
-TYPED_TEST(Walk, TheLongestEdgeIsTheFirstOfThem) {
+TYPED_TEST(Walk, BallsOfAllCornersAreThoseOfEach) {
   constexpr int N = TypeParam::value;
   std::mt19937 random(29);
+  int bounded = 0, failed = 0;
   with_all_targets([&] {
     for (int trial = 0; trial < 1000; ++trial) {
       CornersN<N> corners = random_simplex<N>(random, 1.0);
       if (trial % 2 == 0)  // edges of equal length
         for (PointN<N>& corner : corners)
           for (double& x : corner) x = std::round(x);
-      const LongestEdge<N> found = longest_edge_of<N>(corners), expected = longest_edge_by_corners<N>(corners);
+      std::array<double, N> distances;
+      for (double& distance : distances) distance = std::uniform_real_distribution<double>(0.0, 0.5)(random);
+      if (trial % 3 == 0) distances.fill(0.25);
+      const double limit = longest_edge<N>(corners) * std::uniform_real_distribution<double>(0.3, 1.2)(random);
+      const CornerBalls<N> balls = balls_around<N>(corners, distances, limit),
+                           of_each = balls_by_corners<N>(corners, distances, limit);
+      ASSERT_EQ(balls.bound, of_each.bound);
+      ASSERT_EQ(balls.nearest, of_each.nearest);
+      ASSERT_EQ(balls.square_of_middle, of_each.square_of_middle);
+      ++(balls.bound <= limit ? bounded : failed);
+      const LongestEdge<N>&found = balls.edge, &expected = of_each.edge;
       const auto [first, second] = ends_of_longest_edge<N>(corners);
       ASSERT_EQ(found.first, first);
       ASSERT_EQ(found.second, second);
       ASSERT_EQ(std::sqrt(found.square), longest_edge<N>(corners));
+      ASSERT_EQ(square_of_longest_edge<N>(corners), found.square);
       ASSERT_EQ(found.middle, between(corners[first], corners[second], 0.5));
       ASSERT_EQ(found.squares, expected.squares);
       for (int k = 0; k < N; ++k)
         ASSERT_NEAR(std::sqrt(found.squares[k]), norm(minus(corners[k], found.middle)), 1e-15);
     }
   });
+  EXPECT_GT(bounded, 100);
+  EXPECT_GT(failed, 100);
 }
 
 TYPED_TEST(Walk, EndsAtTheNearestPointOfASmoothContour) {
@@ -239,8 +253,8 @@ TYPED_TEST(Walk, BoundsDoNotDependOnTheOrderOfTheSimplices) {
   }
   const SimplexCorners<N> corners(ball.simplices, moved);
   const auto bound_with = [&](SimplexWalk<N>& one, std::size_t s) {
-    typename SimplexWalk<N>::Part part{corners[s], {}, ball.simplices[s]};
-    for (int i = 0; i < N; ++i) part.near[i] = near[part.vertices[i]];
+    typename SimplexWalk<N>::Part part{corners[s], {}, {}, ball.simplices[s]};
+    for (int i = 0; i < N; ++i) part.set_near(i, near[part.vertices[i]]);
     return one.bound(part, 0.15, 48);
   };
   SimplexWalk<N> forward(gradients, neighbours), backward(gradients, neighbours);
@@ -300,9 +314,9 @@ TYPED_TEST(Walk, BoundsAllPointsOfASimplex) {
     CornersN<N> part = random_simplex<N>(random, size);
     for (PointN<N>& corner : part)
       for (int a = 0; a < N; ++a) corner[a] += ball.corners()[start][0][a];
-    typename SimplexWalk<N>::Part whole{part, {}, {}};
+    typename SimplexWalk<N>::Part whole{part, {}, {}, {}};
     whole.vertices.fill(SimplexWalk<N>::kNone);
-    for (int i = 0; i < N; ++i) whole.near[i] = walk.approach(part[i], start);
+    for (int i = 0; i < N; ++i) whole.set_near(i, walk.approach(part[i], start));
     const double limit = trial % 2 == 0 ? 0.1 : 0.3;
     const double bound = walk.bound(whole, limit, 48);
     if (!(bound < std::numeric_limits<double>::infinity())) {
