@@ -170,17 +170,18 @@ requires DimensionBetween<N, 2, 4>
 /// FacetHierarchy::cells is the number of cells. Cells are numbered by type, in the order of the numbers below, and
 /// within a type in the order of the input: triangles, quadrilaterals, tetrahedra, wedges, pyramids, hexahedra,
 /// octahedra, then polygons or polyhedra; in 4D simplices, prisms over these 3D cells but octahedra, prisms over
-/// octahedra, 16-cells, then prisms over polyhedra. So the numbers are the input's if all cells have one type. Points
-/// are in the order of the contour's vertices, segments in that of their points, (N-1)-facets in that of the cells, and
-/// in 4D polygons in that of their first polyhedra, whose boundary gives their direction. Signatures are 0 in polygons,
-/// polyhedra and prisms over these; in other cells bit v is corner v of the cell, in hexahedra and quadrilaterals the
-/// corner at v >> j & 1 along their j-th axis. Segments go from the point with the smaller number to the other one.
+/// octahedra, 16-cells, then prisms over polyhedra and polytopes. So the numbers are the input's if all cells have one
+/// type. Points are in the order of the contour's vertices, segments in that of their points, (N-1)-facets in that of
+/// the cells, and in 4D polygons in that of their first polyhedra, whose boundary gives their direction. Signatures are
+/// 0 in polygons, polyhedra, prisms over these, and polytopes; in other cells bit v is corner v of the cell, in
+/// hexahedra and quadrilaterals the corner at v >> j & 1 along their j-th axis. Segments go from the point with the
+/// smaller number to the other one.
 /// FacetPlace::axes is 0, `base` of facets of lower dimensions is the cell of the first facet that they bound, and
 /// `number` counts the facets of a cell. Caps are in the faces of cells at the border of the complex; they come last,
 /// and `number` counts those of a face. Facets that bound only caps are caps, too.
 ///
 /// Errors: those of `extract`; TooLarge also for 2^32 incidences. O(C + P + S log S) time for S facets; what is not
-/// `extract` runs on one thread. The result is the same for any number of threads. Memory besides the result: as
+/// `extract` runs on one thread. The result is the same for any number of threads. Memory besides the result: that of
 /// `extract`, the compact contour, and 12 bytes for each side of a polygon; in 4D 40 for each polygon and 8 for each of
 /// its sides besides.
 template <Coordinate Real = float, int N>

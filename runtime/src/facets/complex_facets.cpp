@@ -3,7 +3,7 @@
 // Facets of complexes of cells: the simplices of the compact contour in a cell are joined to polygons and polyhedra.
 #include <algorithm>
 #include <array>
-#include <bitset>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -103,12 +103,9 @@ class CellPolygons {
   std::vector<Index> ring_;
 };
 
-/// The 3D facets of a 4D cell, and which of them have a vertex of the contour.
+/// The 3D facets of a 4D cell, and which of them have vertices of the contour.
 class FacetsOfCell {
  public:
-  /// A 4D polytope of C corners has up to C (C - 3) / 2 facets.
-  using Facets = std::bitset<kPolytopeCorners*(kPolytopeCorners - 3) / 2>;
-
   /// The arguments must outlive this object.
   FacetsOfCell(const CellGroups& cells, const VertexKeys& keys) : cells_(cells), keys_(keys) {}
 
@@ -119,36 +116,67 @@ class FacetsOfCell {
       cell -= static_cast<Index>(cells_.groups[g++].size());
     if (g < cells_.groups.size()) {
       corners_ = {cells_.groups[g].cell(cell), cells_.groups[g].corner_count};
-      of_corner_.assign(corners_.size(), {});
       const auto facets = facets_of(cells_.groups[g].shape);
+      clear(facets.size());
       for (std::size_t f = 0; f < facets.size(); ++f)
-        for (unsigned i = 0; i < facets[f].corner_count; ++i) of_corner_[facets[f].corners[i]].set(f);
+        for (unsigned i = 0; i < facets[f].corner_count; ++i) add(facets[f].corners[i], f);
       return;
     }
     corners_ = cells_.polytopes.points_of(cell);
-    of_corner_.assign(corners_.size(), {});
     const std::vector<SolidFacet> facets = facets_of_solid(cells_.polytopes.shape(cell));
+    clear(facets.size());
     for (std::size_t f = 0; f < facets.size(); ++f)
-      for (const std::uint8_t v : facets[f].corners) of_corner_[v].set(f);
-  }
-  /// The facets that have a vertex on an edge or at a corner of the cell. None for other vertices: they are inside of a
-  /// facet or of the cell.
-  [[nodiscard]] Facets at(Index vertex) const noexcept {
-    if (vertex < keys_.edges.size()) return at_point(keys_.edges[vertex][0]) & at_point(keys_.edges[vertex][1]);
-    const std::size_t corner = vertex - keys_.before_caps;  // of caps
-    if (vertex >= keys_.before_caps && corner < keys_.corners.size()) return at_point(keys_.corners[corner]);
-    return {};
+      for (const std::uint8_t v : facets[f].corners) add(v, f);
   }
 
+  /// Two facets: those at a 2D face, or equal numbers for none.
+  using Face = std::array<std::uint16_t, 2>;
+  /// The 2D face that has all of up to three vertices. None if one of them is neither on an edge nor at a corner: then
+  /// it is inside of a facet or of the cell.
+  [[nodiscard]] Face face_of(std::span<const Index> vertices) const noexcept {
+    std::array<const std::uint64_t*, 6> rows;
+    std::size_t count = 0;
+    for (const Index vertex : vertices) {
+      const std::size_t corner = vertex - keys_.before_caps;  // of caps
+      if (vertex < keys_.edges.size())
+        for (const Index end : keys_.edges[vertex]) rows[count++] = row_of(end);
+      else if (vertex >= keys_.before_caps && corner < keys_.corners.size())
+        rows[count++] = row_of(keys_.corners[corner]);
+      else
+        return {};
+    }
+    Face face{};
+    std::size_t found = 0;
+    for (std::size_t w = 0; w < words_; ++w) {
+      std::uint64_t common = ~std::uint64_t{0};
+      for (std::size_t r = 0; r < count; ++r) common &= rows[r][w];
+      for (; common != 0; common &= common - 1) {
+        face[found] = static_cast<std::uint16_t>(64 * w + static_cast<std::size_t>(std::countr_zero(common)));
+        if (++found == 2) return face;
+      }
+    }
+    return {};
+  }
+  [[nodiscard]] static bool is_face(const Face& face) noexcept { return face[0] != face[1]; }
+
  private:
-  [[nodiscard]] Facets at_point(Index point) const noexcept {
-    return of_corner_[static_cast<std::size_t>(std::find(corners_.begin(), corners_.end(), point) - corners_.begin())];
+  void clear(std::size_t facets) {
+    words_ = (facets + 63) / 64;
+    of_corners_.assign(corners_.size() * words_, 0);
+  }
+  void add(std::size_t corner, std::size_t facet) noexcept {
+    of_corners_[corner * words_ + facet / 64] |= std::uint64_t{1} << (facet % 64);
+  }
+  [[nodiscard]] const std::uint64_t* row_of(Index point) const noexcept {
+    const auto corner = std::find(corners_.begin(), corners_.end(), point) - corners_.begin();
+    return of_corners_.data() + static_cast<std::size_t>(corner) * words_;
   }
 
   const CellGroups& cells_;
   const VertexKeys& keys_;
   std::span<const Index> corners_;
-  std::vector<Facets> of_corner_;
+  std::size_t words_ = 0;
+  std::vector<std::uint64_t> of_corners_;  ///< by corner: its facets as bits
 };
 
 /// The polyhedra of the tetrahedra in a cell, by the polygons around them.
@@ -170,7 +198,8 @@ class CellPolyhedra {
       find_faces(part, cell);
       for (std::size_t f = 0; f < faces_.size(); ++f)
         polygons_.for_each(
-            faces_[f].second, [&](Index a, Index b) { return f == 0 && (cell.at(a) & cell.at(b)).count() >= 2; },
+            faces_[f].second,
+            [&](Index a, Index b) { return f == 0 && FacetsOfCell::is_face(cell.face_of(std::array{a, b})); },
             visit_next);
     }
   }
@@ -183,8 +212,7 @@ class CellPolyhedra {
     faces_.assign(1, {});
     for (const auto& [triangle, of] : border_) {
       if (parts_.find(of) != part) continue;
-      FacetsOfCell::Facets face = cell.at(triangle[0]) & cell.at(triangle[1]) & cell.at(triangle[2]);
-      if (face.count() < 2) face.reset();
+      const FacetsOfCell::Face face = cell.face_of(triangle);
       auto found = std::find_if(faces_.begin(), faces_.end(), [&](const auto& each) { return each.first == face; });
       if (found == faces_.end()) found = faces_.insert(found, {face, {}});
       found->second.push_back(triangle);
@@ -226,7 +254,7 @@ class CellPolyhedra {
 
   DisjointSets parts_;
   std::vector<std::pair<Triangle, Index>> border_;
-  std::vector<std::pair<FacetsOfCell::Facets, std::vector<Triangle>>> faces_;
+  std::vector<std::pair<FacetsOfCell::Face, std::vector<Triangle>>> faces_;
   CellPolygons polygons_;
 };
 

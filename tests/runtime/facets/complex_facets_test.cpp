@@ -16,7 +16,9 @@
 #include "complex/complex_cases.hpp"
 #include "complex/polyhedral_cases.hpp"
 #include "invariants.hpp"
+#include "known_polytopes.hpp"
 #include "meshes.hpp"
+#include "polytopal_meshes.hpp"
 #include "tegl/check.hpp"
 #include "tegl/facet_hierarchy.hpp"
 #include "tegl/lattice.hpp"
@@ -222,6 +224,24 @@ TEST(ComplexFacets, OfPolyhedraOverTimeHaveTheTopologyOfTheContour) {
       }
     }
   }
+}
+
+TEST(ComplexFacets, OfPolytopesHaveTheTopologyOfTheContour) {
+  std::vector<std::pair<std::string, FacetedMesh>> meshes;
+  meshes.emplace_back("products", products(mixed_polygons(3), mixed_polygons(2), 0.02));
+  meshes.emplace_back("duoprism in prisms", with_prisms(products(regular_polygon(5), regular_polygon(6))));
+  meshes.emplace_back("24-cell in prisms", with_prisms(hull(cell24_points())));
+  for (const auto& [name, mesh] : meshes)
+    for (const Ambiguity rule : kAllRules)
+      for (const bool close : {false, true}) {
+        SCOPED_TRACE(testing::Message() << name << ", rule " << static_cast<int>(rule) << (close ? ", closed" : ""));
+        Complex<4> complex = mesh.complex();
+        complex.set_values(random_values(mesh.points.size(), 11));
+        ExtractOptions options;
+        options.ambiguity = rule;
+        options.close = close;
+        expect_facets_of_contour(complex, 0.5, options);
+      }
 }
 
 TEST(ComplexFacets, In4dBesideMissingValuesTheyAreAManifold) {
