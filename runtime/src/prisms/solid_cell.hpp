@@ -122,8 +122,7 @@ class SolidCell {
   // regions
   [[nodiscard]] DisjointSets find_regions(bool high);
   void add_regions(std::size_t f, bool high);
-  void add_parts(std::size_t f, std::size_t face, bool high, std::vector<std::vector<Local>>& parts,
-                 std::vector<Triangle>& triangles) const;
+  void add_parts(std::size_t f, std::size_t face, bool high, RegionSides<Local>& sides) const;
   void add_cube_regions(std::size_t f, bool high);
   void add_ring(std::size_t f, const RegionSides<Local>& sides);
   [[nodiscard]] Local first_centre() const noexcept {

@@ -150,8 +150,7 @@ DisjointSets SolidCell::find_regions(bool high) {
 /// The regions of a facet in which all polygons are discs, or of an octahedron.
 void SolidCell::add_regions(std::size_t f, bool high) {
   RegionSides<Local> sides;
-  for (std::size_t face = 0; face < facets_[f].shape.face_count(); ++face)
-    add_parts(f, face, high, sides.parts, sides.triangles);
+  for (std::size_t face = 0; face < facets_[f].shape.face_count(); ++face) add_parts(f, face, high, sides);
   for (const Piece& piece : sigma_)
     if (piece.facet == f) sides.of_contour.push_back(piece.triangle);
   if (tunnels_[f] && tunnels_[f]->pair.is_high != high) return add_ring(f, sides);
@@ -186,8 +185,8 @@ void SolidCell::add_ring(std::size_t f, const RegionSides<Local>& sides) {
 }
 
 /// The parts of a polygon on one side, with their triangles.
-void SolidCell::add_parts(std::size_t f, std::size_t face, bool high, std::vector<std::vector<Local>>& parts,
-                          std::vector<Triangle>& triangles) const {
+void SolidCell::add_parts(std::size_t f, std::size_t face, bool high, RegionSides<Local>& sides) const {
+  std::vector<std::vector<Local>>& parts = sides.parts;
   const SolidFacet& facet = facets_[f];
   const std::span<const std::uint8_t> ring = facet.shape.ring(face), edges = facet.shape.ring_edges(face);
   const std::size_t count = ring.size(), first = parts.size();
@@ -212,15 +211,11 @@ void SolidCell::add_parts(std::size_t f, std::size_t face, bool high, std::vecto
     Square square = {corner(0), corner(1), corner(2), corner(3)};
     std::sort(square.begin(), square.end());
     if (const auto fan = fans_.find(square); fan != fans_.end()) {
-      triangles.insert(triangles.end(), fan->second.begin(), fan->second.end());
+      sides.triangles.insert(sides.triangles.end(), fan->second.begin(), fan->second.end());
       return;
     }
   }
-  for (std::size_t p = first; p < parts.size(); ++p) {
-    auto& part = parts[p];  // corners have the largest numbers; each triangle has one, so it is moved into the cell
-    std::rotate(part.begin(), std::max_element(part.begin(), part.end()), part.end());
-    for (std::size_t i = 2; i < part.size(); ++i) triangles.push_back({part[0], part[i - 1], part[i]});
-  }
+  add_part_triangles(first, sides);
 }
 
 bool SolidCell::is_in_square(Local v, const Square& square) const noexcept {
