@@ -109,7 +109,7 @@ void add_field(const std::string& field, std::size_t samples) {
 }
 
 /// Ambiguous faces resolved from the data, to compare with `low` in add_field: a smooth field, with hardly any
-/// ambiguity, and noise.
+/// ambiguity, and noise of the same size as there.
 template <int N>
 void add_estimators(const std::string& smooth, std::size_t samples, std::size_t samples_of_noise) {
   for (const Ambiguity ambiguity : {Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider})
@@ -121,9 +121,18 @@ void add_estimators(const std::string& smooth, std::size_t samples, std::size_t 
       what.samples = samples_of_noise;
       add<float, N>("extract", what);
     }
-  // beside them in one run; other sizes of noise are in add_field
-  if (N == 4)
-    for (const int threads : {1, 4}) add<float, N>("extract", {"noise", samples_of_noise, {}, threads});
+}
+
+/// Noise of another size by all rules.
+template <int N>
+void add_noise_by_rules(std::size_t samples) {
+  for (const Ambiguity ambiguity :
+       {Ambiguity::low, Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider})
+    for (const int threads : {1, 4}) {
+      Case what{"noise", samples, {}, threads};
+      what.options.ambiguity = ambiguity;
+      add<float, N>("extract", what);
+    }
 }
 
 /// Barycentric 4D tiles resolved from the data, which are assembled from their cubes, to compare with table tiles: a
@@ -204,7 +213,8 @@ void add_all() {
   for (const auto& field : field_names(4)) add_field<4>(field, field == "noise" ? 32 : 64);
   add_estimators<2>("gyroid", 4096, 4096);
   add_estimators<3>("gyroid", 256, 128);
-  add_estimators<4>("balls", 64, 16);
+  add_estimators<4>("balls", 64, 32);
+  add_noise_by_rules<4>(16);  // short rows
   add_barycentric_4d();
   add_5d();
   add_tiles();

@@ -44,6 +44,7 @@ CASES = [
     Case("uniform noise, 128³", "extract/noise/128^3", ratio={"mean": 2, "saddle": 2}),
     Case("two merging balls, 64⁴", "extract/balls/64^4", ratio={"mean": 1.15, "saddle": 1.15}),
     Case("uniform noise, 16⁴", "extract/noise/16^4", ratio={"mean": 3.5, "saddle": 3.5}),
+    Case("uniform noise, 32⁴", "extract/noise/32^4", ratio={"mean": 3.5, "saddle": 3.5}),
     Case("sphere, 24⁴, barycentric", "barycentric/sphere/24^4/barycentric"),
     Case("uniform noise, 8⁴, barycentric", "barycentric/noise/8^4/barycentric"),
     Case("uniform noise, 4⁵", "extract/noise/4^5", ms_per_tile={"low": 0.25, "mean": 0.25, "saddle": 0.25}),
