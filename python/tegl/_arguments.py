@@ -393,7 +393,13 @@ def own_lattice(data) -> str | None:
     """The lattice that an image of tegl.read or the attribute "sample_lattice" of an xarray records, or None."""
     if is_xarray(data):
         name = data.attrs.get("sample_lattice")
-        return None if name is None else as_text("the attribute 'sample_lattice'", name)
+        if name is None:
+            return None
+        axes, names = data.attrs.get("sample_lattice_axes"), [str(dim) for dim in data.dims]
+        if axes is not None and names != [str(axis) for axis in np.atleast_1d(axes)]:
+            raise ValueError(f"the lattice '{name}' is for the axes {', '.join(map(str, np.atleast_1d(axes)))}, and the array "
+                             f"has {', '.join(names)}; expected the same axes in this order")
+        return as_text("the attribute 'sample_lattice'", name)
     return data.lattice if hasattr(data, "__tegl_image__") else None
 
 
@@ -402,11 +408,10 @@ def own_affine(data) -> np.ndarray | None:
     "affine_axes" has the names of the axes that the map is for. Axes of one chosen index may be missing, if the others'
     coordinates do not depend on them."""
     affine = data.attrs.get("affine")
-    if affine is None:
+    if affine is None or "affine_axes" not in data.attrs:  # without it, the attribute may mean something else
         return None
     names = [str(dim) for dim in data.dims]
-    axes = data.attrs.get("affine_axes")
-    axes = names if axes is None else [str(axis) for axis in np.atleast_1d(axes)]
+    axes = [str(axis) for axis in np.atleast_1d(data.attrs["affine_axes"])]
     matrix = _affine(affine, len(axes), "the attribute 'affine'")
     order = [axes.index(name) for name in names if name in axes]
     gone = [number for number in range(len(axes)) if number not in order]

@@ -428,9 +428,10 @@ class Image:
 
     def to_xarray(self) -> typing.Any:
         """An xarray.DataArray with these names, coordinates, units and directions (CF's "positive"); the affine map is its
-        attribute "affine", for the dimensions in "affine_axes", the lattice its attribute "sample_lattice". On a curved grid, the
-        coordinates "lat" and "lon" belong to the dimensions "lat_index" and "lon_index". `tegl.contour` and other functions find
-        these again, also in another order of the dimensions."""
+        attribute "affine", for the dimensions in "affine_axes", the lattice its attribute "sample_lattice", for
+        the dimensions in "sample_lattice_axes". On a curved grid, the coordinates "lat" and "lon" belong to the dimensions
+        "lat_index" and "lon_index". Functions find the affine map again, also in another order of the dimensions; `tegl.contour`
+        also finds lattices, in this order of the dimensions only, and curved coordinates."""
         try:
             import xarray
         except ImportError as error:
@@ -455,6 +456,7 @@ class Image:
             attrs["affine_axes"] = dims
         if self.lattice is not None:
             attrs["sample_lattice"] = self.lattice
+            attrs["sample_lattice_axes"] = dims
         return xarray.DataArray(self.array, dims=dims, coords=coords, name=self.variable or None, attrs=attrs)
 
 

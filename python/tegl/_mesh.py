@@ -495,6 +495,9 @@ def _cells_of(cells, ndim: int) -> _CellArrays:
         if not _number_of(name):
             raise ValueError(f"cells are of type {name!r}; expected one of {_known_types()}")
         if name not in _TYPES:
+            dimension = {7: 2, 42: 3, 103: 4}[_number_of(name)]
+            if ndim != dimension and len(block) > 0:
+                raise ValueError(f"cells of type {name!r} with points in {ndim} dimensions; expected {dimension}")
             blocks.append(_polytope_arrays(name, block))
             continue
         number, count = _TYPES[name]

@@ -99,14 +99,15 @@ void check_and_write(const FacetHierarchy<N, Real>& facets, const FacetsWork& wo
   result.seconds.write = watch.lap();
 }
 
-/// Extracts the facets of a complex, sets their axes with set_axes(facets), and writes them.
+/// Extracts the facets of a complex, sets their axes with set_axes(facets), and writes them. Adds to the time to
+/// generate them.
 template <int N, class SetAxes>
 void write_facets_of(const Complex<N>& complex, const SetAxes& set_axes, const FacetsWork& work, ProgressBar& bar,
                      FacetsResult& result, WrittenFiles& written) {
   Stopwatch watch;
   const auto finish = [&](auto facets) {
     set_axes(facets);
-    result.seconds.generate = watch.lap();
+    result.seconds.generate += watch.lap();
     result.stats = stats_of(facets, facets.cells, result.seconds.generate);
     check_and_write(facets, work, bar, result, written);
   };
@@ -208,8 +209,8 @@ void require_output_holds_facets(const fs::path& output, int image_dim) {
 
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
                         WrittenFiles& written) {
-  FacetsWork on_lattice = work;
-  ExtractOptions& options = on_lattice.options;
+  FacetsWork with_progress = work;
+  ExtractOptions& options = with_progress.options;
   options.work.progress = bar.stage("facets");
   Stopwatch watch;
   const auto finish = [&](const auto& facets, std::uint64_t tiles) {
@@ -225,7 +226,9 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
         facets.axis_units[a] = owned.grid.axes[a].unit;
       }
     };
-    write_facets_of(lattice_complex(owned.view(), *work.lattice), set_axes, on_lattice, bar, result, written);
+    const auto complex = lattice_complex(owned.view(), *work.lattice);
+    result.seconds.generate = watch.lap();
+    write_facets_of(complex, set_axes, with_progress, bar, result, written);
   };
   std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
 }

@@ -510,12 +510,12 @@ std::string reason_of_zero_size(const AnyImage& image, double of_samples, double
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> std::string {
     if constexpr (N == 4 && std::is_floating_point_v<T>) {
       bool any_tie = false, any_missing = false;
-      for (const T value : owned.values) {
-        any_tie = any_tie || static_cast<double>(value) == of_samples;
-        any_missing = any_missing || std::isnan(value);
+      for (const T value : owned.values) {  // without branches, so that the loop runs at the pace of memory
+        any_tie |= static_cast<double>(value) == of_samples;
+        any_missing |= std::isnan(value);
       }
       any_tie = any_tie && epsilon == 0.0;
-      const std::string missing = "regions of missing values meet in an edge of the grid";
+      const std::string missing = "regions of missing values meet in an edge of a cell";
       if (any_tie && any_missing) return "samples equal the isovalue, which --epsilon avoids, or " + missing;
       if (any_missing) return missing;
     }

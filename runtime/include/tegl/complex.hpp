@@ -114,7 +114,7 @@ class Complex {
 
   /// Cells of several types, with polygons (N = 2), polyhedra (N = 3) and polytopes (N = 4). Errors: as the other
   /// constructors; InvalidArgument also for lists whose ends do not ascend, and for polygons, polyhedra and polytopes
-  /// that CellLists excludes. Polytopes with the same lists, up to the numbers of the points, are checked once.
+  /// that CellLists excludes. Polytopes with the same lists, up to the numbers of the points, are usually checked once.
   Complex(std::vector<Point> points, const CellLists& cells);
 
   [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }   ///< #P x N

@@ -22,8 +22,7 @@ enum class Division : std::uint8_t {
   /// 2 triangles or 5 tetrahedra. Neighbouring cells are mirror images of each other. Only in 2D and 3D.
   alternating,
   /// 2^(N-1) N! simplices (4, 24, 192, 1 920): cones over the faces from their centres. The value of a centre is the
-  /// mean of
-  /// the face's corners. All symmetries of the cell.
+  /// mean of the face's corners. All symmetries of the cell.
   symmetric,
   /// As `symmetric`, but only in cells that are ambiguous at the isovalue, and there only their ambiguous faces have
   /// centres: other faces are squares, as in the neighbours, so there are no cracks. Most cells are not divided. Only
@@ -49,10 +48,10 @@ requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Extraction<N, Real> extract_divided_with_stats(const Image<T, N>& image, Division division,
                                                              double isovalue, const ExtractOptions& options = {});
 
-/// Extracts the contour of an image whose cells are divided. In 2D to 4D it is that of `divided_complex`. In 5D the
-/// simplices are not stored; the contour is an oriented manifold with a boundary at the image border only. Its vertices
-/// lie on the edges of the division, in the order of the cells, and if samples equal the isovalue, they are kept off
-/// the layers of the last two axes as those of `extract`. Between two simplices of high and of low points, a
+/// Extracts the contour of an image whose cells are divided. In 2D to 4D it is the contour of `divided_complex`. In 5D
+/// the simplices are not stored; the contour is an oriented manifold with a boundary at the image border only. Its
+/// vertices lie on the edges of the division, in the order of the cells, and if samples equal the isovalue, they are
+/// kept off the layers of the last two axes as those of `extract`. Between two simplices of high and of low points, a
 /// simplex has the monotone paths through the product of the two, with points in the order of their coordinates, the
 /// last axis first. So contours do not intersect themselves, and their cut at a layer is, up to diagonals, the divided
 /// contour of the layer.

@@ -37,8 +37,8 @@ enum class TrackEventKind {
 /// An event: parts appear, merge, split or vanish.
 struct TrackEvent {
   TrackEventKind kind = TrackEventKind::birth;  ///< what happens
-  /// Last coordinate of `vertex`; if more vertices have one that differs by rounding only, such as that of a layer of
-  /// the image, this one.
+  /// Last coordinate of `vertex`, or the one that most vertices have among those that differ from it by rounding only,
+  /// such as the time of a layer of the image.
   double time = 0;
   std::array<double, 4> place{};  ///< other coordinates of `vertex`; space_dim - 1 of them
   Index vertex = 0;               ///< vertex of the contour where it happens

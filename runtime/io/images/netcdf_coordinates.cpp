@@ -70,7 +70,7 @@ struct Limit {
 Limit limit_of(Coordinate coordinate) {
   if (coordinate == Coordinate::longitude) return {720.0, "-720 to 720"};  // also of other turns
   if (coordinate == Coordinate::latitude) return {90.01, "-90 to 90"};     // rounded numbers
-  return {1e19, "less than 1e19"};
+  return {1e19, "at most 1e19"};
 }
 
 /// From the attribute "positive" of a vertical coordinate. Without it, pressures increase downwards (CF conventions,

@@ -56,35 +56,42 @@ struct Columns {
   std::vector<std::size_t> values;
 };
 
-/// The columns with the names x, y, z and t, in this order; empty without x and y.
+/// The columns with the names x, y, z and t in any case, lower case first, in this order; empty without x and y.
 std::vector<std::size_t> named_axes(const std::vector<std::string>& names) {
   std::vector<std::size_t> axes;
   for (const std::string_view axis : {"x", "y", "z", "t"}) {
-    const auto found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
-      return lower(name) == axis || (axis == "t" && lower(name) == "time");
-    });
+    auto found = std::find(names.begin(), names.end(), axis);
+    if (found == names.end())
+      found = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+        return lower(name) == axis || (axis == "t" && lower(name) == "time");
+      });
     if (found != names.end()) axes.push_back(static_cast<std::size_t>(found - names.begin()));
     if (axis == "y" && axes.size() < 2) return {};
   }
   return axes;
 }
 
-/// Throws if another column has the name of this one. `any_case`: also in other letters.
+/// Throws if another column has the name of this one. `any_case`: also in other letters, unless it is `variable`.
 void require_one_of_name(const std::vector<std::string>& names, std::size_t column, bool any_case,
-                         const fs::path& path) {
-  for (std::size_t c = 0; c < names.size(); ++c)
-    if (c != column && (names[c] == names[column] || (any_case && lower(names[c]) == lower(names[column]))))
-      fail(ErrorCode::MalformedFile, path, "the columns {} and {} have one name, '{}'; expected different names",
-           std::min(c, column) + 1, std::max(c, column) + 1, names[column]);
+                         const std::string& variable, const fs::path& path) {
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    if (c == column) continue;
+    const bool is_same_in_any_case = any_case && names[c] != variable && lower(names[c]) == lower(names[column]);
+    if (names[c] == names[column] || is_same_in_any_case)
+      fail(ErrorCode::MalformedFile, path,
+           "the columns {} ('{}') and {} ('{}') have one name; expected different names", std::min(c, column) + 1,
+           names[std::min(c, column)], std::max(c, column) + 1, names[std::max(c, column)]);
+  }
 }
 
 /// Throws if another column has the name of a coordinate, whose names may have any case, or of the chosen column.
 void require_clear_names(const Columns& columns, const std::vector<std::string>& names, const std::string& variable,
                          const fs::path& path) {
   if (names.empty()) return;
-  for (const std::size_t axis : columns.axes) require_one_of_name(names, axis, true, path);
+  for (const std::size_t axis : columns.axes) require_one_of_name(names, axis, true, variable, path);
   const auto chosen = std::find(names.begin(), names.end(), variable);
-  if (chosen != names.end()) require_one_of_name(names, static_cast<std::size_t>(chosen - names.begin()), false, path);
+  if (chosen != names.end())
+    require_one_of_name(names, static_cast<std::size_t>(chosen - names.begin()), false, variable, path);
 }
 
 Columns columns_of(const std::vector<std::string>& names, std::size_t count, const std::string& variable,

@@ -65,8 +65,10 @@ const CellKind& kind_in(int dim, CellType type, std::size_t cell) {
   for (const CellKind& k : kKinds)
     if (static_cast<int>(table_of(k.shape).dim) == dim)
       expected += fmt::format("{}{} ({})", expected.empty() ? "" : ", ", static_cast<int>(k.type), k.name);
-  throw Error(ErrorCode::InvalidArgument, fmt::format("cell {}: type {} ({}); expected a {}D cell: {}", cell,
-                                                      static_cast<int>(type), name_of(type), dim, expected));
+  const char* const with_lists = dim == 2 ? "7 (polygon)" : dim == 3 ? "42 (polyhedron)" : "103 (polytope)";
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("cell {}: type {} ({}); expected a {}D cell: {}, or {} in CellLists", cell,
+                          static_cast<int>(type), name_of(type), dim, expected, with_lists));
 }
 
 /// Checks that corners are different points.
@@ -346,8 +348,8 @@ class ListedCells {
     polytopes_.add_polytope(std::move(found));
   }
 
-  /// recognise_polytope, once for all cells with the same lists up to the numbers of their points. `corners` of what is
-  /// kept are places among the distinct points.
+  /// recognise_polytope, usually once for all cells with the same lists up to the numbers of their points. `corners` of
+  /// what is kept are places among the distinct points.
   RecognisedPolytope recognise(std::size_t c, const PolytopeLists& lists) {
     std::vector<Index> distinct;
     std::vector<std::uint64_t> key(lists.face_ends.begin(), lists.face_ends.end());
@@ -364,6 +366,7 @@ class ListedCells {
       RecognisedPolytope found = recognise_polytope(c, points_, lists);
       for (Index& p : found.corners)
         p = static_cast<Index>(std::find(distinct.begin(), distinct.end(), p) - distinct.begin());
+      if (recognised_.size() == kMostRecognised) recognised_.clear();
       known = recognised_.emplace(std::move(key), std::move(found)).first;
     }
     RecognisedPolytope result = known->second;
@@ -391,6 +394,7 @@ class ListedCells {
   std::vector<CellGroup> groups_;
   Polytopes polytopes_;
   std::vector<std::uint64_t> ends_, facet_ends_;
+  static constexpr std::size_t kMostRecognised = 4096;  ///< in meshes without repeated lists these are all different
   std::map<std::vector<std::uint64_t>, RecognisedPolytope> recognised_;
 };
 

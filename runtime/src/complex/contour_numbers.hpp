@@ -21,13 +21,13 @@ void check_complex_options(double isovalue, const ExtractOptions& options);
 
 /// The simplices of an active cell.
 struct CellSimplices {
-  Index cell;               ///< number among all cells: by group, polygons and polyhedra last
-  std::uint16_t signature;  ///< 0 for polygons and polyhedra
+  Index cell;               ///< number among all cells: by group, then polygons, polyhedra and 4D polytopes
+  std::uint16_t signature;  ///< 0 for polygons, polyhedra and 4D polytopes
   std::uint32_t end;        ///< the number of the first simplex behind them
 };
 
 /// The numbers of a contour. Vertices: those on edges, then barycentres in common 3-faces, then vertices of cells,
-/// those of polygons and polyhedra last. Simplices: by cell, likewise.
+/// of polygons, polyhedra and 4D polytopes last. Simplices: in the order of the cells.
 class ContourNumbers {
  public:
   /// The arguments must outlive this object. Reports progress from 0 to 1. `active`: numbers of the cells that may be

@@ -262,8 +262,9 @@ double relative_volume(const PolytopeShape& shape, const Index* corners,
   return std::abs(volume) > kFlat ? volume : 0.0;
 }
 
-/// The volume inside the facets of a 4D polytope, times a positive factor, likewise: of the pyramids with their apex at
-/// the mean of all corners over tetrahedra between the mean of a facet, the mean of one of its faces and an edge there.
+/// The volume inside the facets of a 4D polytope, times a positive factor, relative to the box around its corners; 0 if
+/// flat up to rounding. Sum over the pyramids with their apex at the mean of all corners over tetrahedra between the
+/// mean of a facet, the mean of one of its faces and an edge there.
 double relative_volume_of_solids(const PolytopeShape& shape, const Index* corners,
                                  const std::vector<std::array<double, 4>>& points) {
   using Point = std::array<double, 4>;

@@ -33,13 +33,16 @@ struct SolidFacet {
   [[nodiscard]] bool is_tabled() const noexcept { return kind < Kind::end; }
 };
 
+// both have the shapes with tables in one order
+static_assert(static_cast<int>(SolidFacet::Kind::octahedron) == static_cast<int>(PolyhedronShape::octahedron));
+
 /// The facets of a 4D polytope that is given by them.
 struct PolytopeSolids {
   struct Solid {
     SolidFacet::Kind kind;
     bool is_inverted;
     std::uint32_t first_corner;  ///< in `corners`; they end where those of the next facet begin
-    std::uint32_t first_edge;    ///< in `edges`, likewise
+    std::uint32_t first_edge;    ///< in `edges`; they end where those of the next facet begin
     std::uint32_t lattice;       ///< in `lattices`; not of facets with a table
   };
   std::vector<Solid> solids;

@@ -117,7 +117,7 @@ class Sweeper {
     // half of the tolerance, so that two vertices with one reported time count as equal
     const double from = times[v] - result_.tolerance / 2, to = times[v] + result_.tolerance / 2;
     double best = times[v];
-    std::ptrdiff_t most = 0;
+    std::ptrdiff_t most = 1;
     for (auto at = std::lower_bound(times.begin(), times.end(), from); at != times.end() && *at <= to;) {
       const auto end = std::upper_bound(at, times.end(), *at);
       if (end - at > most) best = *at, most = end - at;
