@@ -22,10 +22,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from . import _dates, _kinds, _tegl
+from ._xarrays import INDEX_SUFFIX, in_order, is_xarray, own_curved
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 _TIME_NAMES = ("t", "time")
-INDEX_SUFFIX = "_index"  #: of the dimensions of an xarray with the coordinates of a curved grid
 
 Progress = Callable[[float], object]
 #: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.
@@ -226,10 +226,6 @@ def turn_around(time_axis: int, ndim: int) -> bool:
     return time_axis == 0
 
 
-def is_xarray(data: object) -> bool:
-    return type(data).__module__.split(".")[0] == "xarray" and hasattr(data, "dims")
-
-
 def number_on_axis(at: object, unit: str) -> float:
     """A coordinate as a number; of dates and durations, by the unit of the axis."""
     date = _dates.as_date(at)
@@ -421,21 +417,6 @@ def own_affine(data) -> np.ndarray | None:
     return matrix[order][:, [*order, len(axes)]]
 
 
-def own_curved(data) -> dict[int, np.ndarray]:
-    """The coordinates of a curved grid, by axis, of an image of tegl.read or an xarray made of it: those of the dimension
-    "lon_index" are the coordinate "lon"."""
-    if not is_xarray(data):
-        return data.curved if hasattr(data, "__tegl_image__") else {}
-    found: dict[int, np.ndarray] = {}
-    for axis, dim in enumerate(data.dims):
-        name = str(dim).removesuffix(INDEX_SUFFIX)
-        if name == str(dim) or name not in data.coords or dim not in data.coords[name].dims:
-            continue
-        coordinate = data.coords[name].transpose(*(one for one in data.dims if one in data.coords[name].dims))
-        found[axis] = coordinate.values.reshape([data.sizes[one] if one in coordinate.dims else 1 for one in data.dims])
-    return found
-
-
 def _values(array: np.ndarray) -> np.ndarray:
     """The array in a type of the library; without a copy if possible."""
     if array.dtype.name not in _TYPES:
@@ -453,24 +434,6 @@ def _values(array: np.ndarray) -> np.ndarray:
     if not array.flags.aligned or any(s % array.itemsize for s in array.strides):
         array = np.array(array)  # fields of records, or bytes from anywhere
     return array
-
-
-def _in_order(mask, data):
-    """An xarray's mask with its dimensions and coordinates in the order of those of `data`."""
-    if set(mask.dims) != set(data.dims):
-        raise ValueError(f"mask has the dimensions {', '.join(map(str, mask.dims))}; expected those of the array, "
-                         f"{', '.join(map(str, data.dims))}")
-    for dim in data.dims:
-        if dim not in mask.coords or dim not in data.coords or mask.sizes[dim] != data.sizes[dim]:
-            continue
-        own, expected = mask.coords[dim].values, data.coords[dim].values
-        if np.array_equal(own, expected):
-            continue
-        if len(np.unique(own)) < len(own) or not np.array_equal(np.sort(own), np.sort(expected)):
-            raise ValueError(f"mask has other coordinates along '{dim}' than the array, {own[0]} to {own[-1]}; expected "
-                             f"those of the array, {expected[0]} to {expected[-1]}, in any order")
-        mask = mask.sel({dim: expected})
-    return mask.transpose(*data.dims)
 
 
 def booleans(mask) -> np.ndarray:
@@ -539,7 +502,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         raise ValueError(f"the array has {ndim} axes; expected 2 to 5")
     array = _values(array)
     if mask is not None:
-        array = _masked(array, mask if labelled is None or not is_xarray(mask) else _in_order(mask, labelled))
+        array = _masked(array, mask if labelled is None or not is_xarray(mask) else in_order(mask, labelled))
     if coords is None:
         coords = known if spacing is None and origin is None else None
     elif len(coords := as_list("coords", coords, "the coordinates of each axis, or None for one")) != ndim:

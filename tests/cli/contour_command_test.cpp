@@ -585,7 +585,7 @@ TEST_F(Contour, NamesTheReasonOfZeroSizes) {
     EXPECT_EQ(run.exit, 0) << run.err;
     return run.out;
   };
-  const std::string missing = "regions of missing values meet in an edge of the grid)";
+  const std::string missing = "regions of missing values meet in an edge of a cell)";
   EXPECT_THAT(text_of({"--iso", "127.3"}), HasSubstr("of zero size (" + missing));
   EXPECT_THAT(text_of({"--iso", "127.3", "--epsilon", "0.01"}), HasSubstr("of zero size (" + missing));
   for (float& value : samples.values) value = std::round(value / 64);

@@ -12,7 +12,7 @@ namespace tegl::detail {
 /// destroyed frees the pages that are left. Without effect on systems other than Linux.
 class KeptPages {
  public:
-  /// `most`: bytes that are kept; more are freed.
+  /// `most`: bytes that are kept; more are freed. Of several objects, the largest number holds.
   explicit KeptPages(std::size_t most);
   ~KeptPages();
   KeptPages(const KeptPages&) = delete;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -56,7 +57,8 @@ void prefer_huge_pages(void* begin, std::size_t bytes) noexcept {
 
 #ifdef __linux__
 
-/// See KeptPages. Blocks consist of huge pages.
+/// See KeptPages. Blocks of this process, in multiples of 2 MiB; rarely, arrays of the reading process, whose pages are
+/// copied when they are written.
 class PagePool {
  public:
   void open(std::size_t most) {
@@ -67,11 +69,16 @@ class PagePool {
   void close() {
     const std::lock_guard lock(mutex_);
     if (users_.fetch_sub(1, std::memory_order_relaxed) > 1) return;
-    while (count_ > 0) {
-      --count_;
-      munmap(blocks_[count_].begin, blocks_[count_].bytes);
-    }
-    kept_ = most_ = 0;
+    free_all();
+    most_ = 0;
+  }
+  /// Frees the blocks; returns whether there were any.
+  bool release() noexcept {
+    if (!is_open()) return false;
+    const std::lock_guard lock(mutex_);
+    const bool had_any = count_ > 0;
+    free_all();
+    return had_any;
   }
 
   /// Keeps a block; returns false if it does not.
@@ -85,19 +92,23 @@ class PagePool {
   }
 
   /// Replaces the first pages of a fresh block by those that are kept, one by one: a block may consist of parts that
-  /// the system moves only by themselves.
-  void move_to(unsigned char* block, std::size_t bytes) noexcept {
-    if (!is_open()) return;
+  /// the system moves only by themselves. In ascending order, so that the system can join them. Returns false if a part
+  /// of the block has no memory.
+  [[nodiscard]] bool move_to(unsigned char* block, std::size_t bytes) noexcept {
+    if (!is_open()) return true;
     const std::lock_guard lock(mutex_);
     for (std::size_t moved = 0; moved < bytes && count_ > 0; moved += kHugePage) {
       Block& from = blocks_[count_ - 1];
+      unsigned char* const page = from.begin;
+      from.begin += kHugePage;
       from.bytes -= kHugePage;
       kept_ -= kHugePage;
       if (from.bytes == 0) --count_;
-      unsigned char* const page = from.begin + from.bytes;
-      if (mremap(page, kHugePage, kHugePage, MREMAP_MAYMOVE | MREMAP_FIXED, block + moved) == MAP_FAILED)
-        munmap(page, kHugePage);  // the fresh page stays
+      if (mremap(page, kHugePage, kHugePage, MREMAP_MAYMOVE | MREMAP_FIXED, block + moved) != MAP_FAILED) continue;
+      munmap(page, kHugePage);
+      return has_fresh_page(block + moved);
     }
+    return true;
   }
 
  private:
@@ -106,6 +117,20 @@ class PagePool {
     std::size_t bytes;
   };
   [[nodiscard]] bool is_open() const { return users_.load(std::memory_order_relaxed) != 0; }
+  void free_all() noexcept {
+    while (count_ > 0) {
+      --count_;
+      munmap(blocks_[count_].begin, blocks_[count_].bytes);
+    }
+    kept_ = 0;
+  }
+  /// After a page could not be moved there: the system may have removed the fresh page first.
+  [[nodiscard]] static bool has_fresh_page(unsigned char* page) noexcept {
+    constexpr int kFresh = MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED_NOREPLACE;
+    if (mmap(page, kHugePage, PROT_READ | PROT_WRITE, kFresh, -1, 0) == MAP_FAILED) return errno == EEXIST;
+    madvise(page, kHugePage, MADV_HUGEPAGE);
+    return true;
+  }
 
   std::mutex mutex_;
   std::atomic<unsigned> users_ = 0;
@@ -171,14 +196,21 @@ void* allocate_large_block(std::size_t bytes) {
     if (void* const block = block_source->allocate(rounded(bytes))) return block;
   // One page more than needed, so that an aligned block can be cut out.
   const std::size_t size = rounded(bytes) + kHugePage;
-  void* const mapped = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  const auto map = [&] {
+    return mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  };
+  void* mapped = map();
+  if (mapped == MAP_FAILED && block_source == nullptr && page_pool.release()) mapped = map();
   if (mapped == MAP_FAILED) throw std::bad_alloc();
   auto* const begin = static_cast<unsigned char*>(mapped);
   const std::size_t before = (kHugePage - reinterpret_cast<std::uintptr_t>(begin) % kHugePage) % kHugePage;
   if (before != 0) munmap(begin, before);
   if (before != kHugePage) munmap(begin + before + rounded(bytes), kHugePage - before);
   madvise(begin + before, rounded(bytes), MADV_HUGEPAGE);  // without huge pages, small ones are used
-  page_pool.move_to(begin + before, rounded(bytes));
+  if (block_source == nullptr && !page_pool.move_to(begin + before, rounded(bytes))) {
+    munmap(begin + before, rounded(bytes));
+    throw std::bad_alloc();
+  }
   return begin + before;
 }
 

@@ -115,7 +115,7 @@ HWY_INLINE void alphas(const EdgeSamples<T>& edges, double isovalue, double epsi
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 
 /// Samples are read by registers, in which the ends of edges are chosen.
-void alphas_of_row(const EdgesOfSamples& row, double isovalue, double epsilon, double* out) {
+void alphas_of_row(const FloatRowEdges& row, double isovalue, double epsilon, double* out) {
   const hn::ScalableTag<float> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   static_assert(kLanes <= kLeastEdges);
@@ -123,7 +123,7 @@ void alphas_of_row(const EdgesOfSamples& row, double isovalue, double epsilon, d
   float from[kBlock + kLanes];
   float to[kBlock + kLanes];
   // local, because stores of vectors may change any memory
-  const EdgesOfSamples edges = row;
+  const FloatRowEdges edges = row;
   for (std::size_t first = 0; first < edges.edges; first += kBlock) {
     std::size_t count = 0;
     const auto some = [&](std::size_t x, std::size_t skipped) HWY_ATTR {
@@ -147,7 +147,7 @@ void alphas_of_row(const EdgesOfSamples& row, double isovalue, double epsilon, d
 
 #else
 
-void alphas_of_row(const EdgesOfSamples& row, double isovalue, double epsilon, double* out) {
+void alphas_of_row(const FloatRowEdges& row, double isovalue, double epsilon, double* out) {
   for (std::size_t w = 0; w * kWordBits < row.edges; ++w)
     for (Word rest = row.critical[w]; rest != 0; rest &= rest - 1) {
       const std::size_t x = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
@@ -235,7 +235,7 @@ void alphas_between(const double* from, const double* to, std::size_t count, dou
 }
 
 HWY_EXPORT(alphas_of_row);
-void row_alphas(const EdgesOfSamples& row, double isovalue, double epsilon, double* out) noexcept {
+void row_alphas(const FloatRowEdges& row, double isovalue, double epsilon, double* out) noexcept {
   HWY_DYNAMIC_DISPATCH(alphas_of_row)(row, isovalue, epsilon, out);
 }
 

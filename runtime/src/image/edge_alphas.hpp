@@ -29,7 +29,7 @@ template <Value T>
 void edge_alphas(const EdgeSamples<T>& edges, double isovalue, double epsilon, double* out) noexcept;
 
 /// Critical edges of one row, whose samples are adjacent in memory. Edge i goes from starts[i] to ends[i].
-struct EdgesOfSamples {
+struct FloatRowEdges {
   const float* starts;
   const float* ends;
   std::size_t edges;     ///< of the row, critical or not; at least kLeastEdges
@@ -37,9 +37,9 @@ struct EdgesOfSamples {
 };
 inline constexpr std::size_t kLeastEdges = 16;
 /// edge_alphas for the edges of a row, in ascending order. Faster if many are critical.
-void row_alphas(const EdgesOfSamples& row, double isovalue, double epsilon, double* out) noexcept;
+void row_alphas(const FloatRowEdges& row, double isovalue, double epsilon, double* out) noexcept;
 
-/// The same from the values at both ends of each edge.
+/// edge_alphas from the values at both ends of each edge.
 void alphas_between(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
                     double* out) noexcept;
 /// Interpolation parameters for all 32 edges of a 4D tile, from the values at its 16 corners. Results for non-critical

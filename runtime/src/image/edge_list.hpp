@@ -13,8 +13,8 @@
 
 namespace tegl::detail {
 
-/// The edges are of several rows, or all of one row. Then the arrays below `at` hold at most a piece of it: their
-/// values are equal along the row, or are consumed before the next piece.
+/// The edges are of several rows, or all of one row. In the latter case, the arrays below `at` hold at most a piece of
+/// it: their values are equal along the row, or are consumed before the next piece.
 template <int N, class Vertex>
 struct EdgeList {
   std::size_t size = 0;

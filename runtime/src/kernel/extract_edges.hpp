@@ -149,7 +149,7 @@ class EdgeWriter {
   static constexpr std::size_t kMargin = 16;   ///< entries that vector code reads or writes past the end of lists
   static constexpr std::uint32_t kMany = 48;   ///< rows with so many edges are not combined with others
   static constexpr std::size_t kAtOnce = 8;    ///< values per store
-  /// With fewer edges, it is faster to read the samples around each.
+  /// In rows with fewer than one edge per so many samples, it is faster to read the samples around each edge.
   static constexpr std::size_t kSamplesPerEdge = 3;
   static constexpr std::size_t kPiece = 4096;  ///< maximum edges of one row processed at a time
   /// Samples of the smallest layer that is not still in a near cache when its vertices are computed.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stars as parts of one array, the link condition, and edge contraction.
+// Stars in arrays of several, the link condition, and edge contraction.
 #include "simplify/collapsible_complex.hpp"
 
 #include <algorithm>
@@ -173,7 +173,7 @@ void CollapsibleComplex<N>::neighbours(Index v, std::vector<Index>& result) {
   visit_neighbours(v, few_, [&](Index a) { result.push_back(a); });
 }
 
-/// The star of u after v was merged into it, in the part of either vertex if it is large enough.
+/// The star of u after v was merged into it, in the memory of either vertex's star if that is large enough.
 template <int N>
 void CollapsibleComplex<N>::set_star(Index u, Index v, const Edge& edge, Scratch& scratch) {
   const auto size = static_cast<Index>(edge.only_u.size() + edge.only_v.size());

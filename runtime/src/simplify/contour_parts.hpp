@@ -76,9 +76,13 @@ class ContourParts {
     const std::size_t middle = sample.size() / 2;
     std::nth_element(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(middle), sample.end(),
                      [&](const auto& p, const auto& q) { return p[axis] < q[axis]; });
-    cuts_[node] = {axis, sample[middle][axis]};
-    cut(2 * node, sample.first(middle));
-    cut(2 * node + 1, sample.subspan(middle));
+    const double at = sample[middle][axis];
+    cuts_[node] = {axis, at};
+    // as part_at: which of several points at the median come first is not specified
+    const auto right = std::partition(sample.begin(), sample.end(), [&](const auto& p) { return p[axis] < at; });
+    const auto left = static_cast<std::size_t>(right - sample.begin());
+    cut(2 * node, sample.first(left));
+    cut(2 * node + 1, sample.subspan(left));
   }
 
   [[nodiscard]] std::uint8_t part_at(const PointN<N>& p) const {

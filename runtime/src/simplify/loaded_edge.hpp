@@ -15,7 +15,7 @@
 
 namespace tegl::detail {
 
-/// Use one per thread.
+/// Use one per thread and complex: it holds memory of the complex.
 template <int N>
 class LoadedEdge {
  public:

@@ -47,7 +47,7 @@ class MeasuredContour {
     preparation_->begin();
   }
 
-  /// Bounds by simplex only of the other contour.
+  /// Only to_other.of_to and from_other.of_from are filled: bounds by simplex of the other contour.
   struct Deviations {
     Deviation to_other, from_other;
   };

@@ -125,7 +125,7 @@ class QuadricOrder {
   /// Entries that are contracted in parts; progress is reported after at most kMostEntries.
   static constexpr std::size_t kLeastEntries = 128;
   static constexpr std::size_t kMostEntries = std::size_t{1} << 15;
-  /// Contractions of several edges at the same time end when so many simplices are left to be removed from each part.
+  /// Edges are contracted one after the other if fewer simplices than this may be removed from each part.
   static constexpr std::size_t kLeastRemoved = 1024;
 
   struct Pushed {
@@ -194,8 +194,8 @@ class QuadricOrder {
     }
   }
 
-  /// How many simplices may be removed from each part at the same time, without reaching the goal in half of it; 0: one
-  /// edge is contracted after the other.
+  /// The number of simplices that may be removed from each part at the same time: all parts together remove at most
+  /// about half of those above the goal. 0: edges are contracted one after the other.
   [[nodiscard]] std::size_t most_removed_from_part(std::size_t entries) const {
     if (!parts_ || entries < least_entries_) return 0;
     const std::size_t most = (collapse_.complex().alive() - count_) / (2 * Parts::kCount);

@@ -19,7 +19,8 @@ struct CollapseGoal {
   const Progress* progress = nullptr;
   double from = 0, to = 1;  ///< range of `progress` that this work covers
   unsigned threads = 1;     ///< only for `collapse_by_quadrics`; 0 for all of the machine
-  /// Only for `collapse_by_quadrics`: contours of at least so many simplices are contracted in parts, at the same time.
+  /// Only for `collapse_by_quadrics`: contours of at least so many simplices are contracted in parts, at the same time,
+  /// unless intersections are refused.
   /// Smaller ones are not worth the other order.
   std::size_t least_in_parts = 100'000;
   /// Called before the first contraction: from then on, one thread does much of the work.

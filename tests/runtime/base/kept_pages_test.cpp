@@ -14,7 +14,9 @@
 #include <vector>
 
 #include "tegl/memory.hpp"
-#ifdef __linux__
+// Sanitizers use memory of their own for each page.
+#if defined(__linux__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define TEGL_TEST_FAULTS
 #include <sys/resource.h>
 #endif
 
@@ -72,7 +74,7 @@ TEST(KeptPages, AreInOneBlockAtATime) {
   use_blocks(5);
 }
 
-#ifdef __linux__
+#ifdef TEGL_TEST_FAULTS
 /// Page faults of this thread for the first use of a block.
 std::ptrdiff_t faults_of(std::size_t bytes) {
   const auto faults = [] {
