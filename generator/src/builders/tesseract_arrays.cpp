@@ -184,7 +184,7 @@ void define_lists(std::string& text, const CubeLists& lists, const std::string& 
   });
   define(text, name("std::uint32_t", "Apexes"), lists.apexes, mask);
   std::vector<CubeLists::Part> parts = lists.parts;
-  parts.resize(lists.parts_of_cube + CubeLists::kMostParts);
+  parts.resize(lists.parts_of_cube);
   define(text, name("ResolvedCubes::PartTriangles", "Parts"), parts,
          [](const CubeLists::Part& p) { return fmt::format("{{{},{}}}", p.first_triangle, p.triangle_count); });
   parts = lists.parts;

@@ -315,13 +315,12 @@ void RowOfTesseracts::begin_word(std::size_t word, std::uint32_t ordinal) noexce
   if (has_many_) detail::resolve(estimator_, faces_.look_at(word), of_word_);
 }
 
-/// Starts to load the data from which the builder assembles a tile: they do not fit into the nearest caches. A tile
-/// that is one cone is only described.
+/// Starts to load the data from which the builder assembles a tile: they do not fit into the nearest caches.
 void RowOfTesseracts::fetch(const ResolvedCubes& cubes, const ResolvedTile& tile) noexcept {
-  if (tile.apart == 0) return;
   for (unsigned f = 0; f < 8; ++f) {
     const unsigned list = tile.lists[f];
     hwy::Prefetch(cubes.triangles(f, list).words);
+    if (tile.apart == 0) continue;
     const std::uint32_t part = ResolvedCubes::first_part(f) + cubes.summary(list).first_part;
     hwy::Prefetch(cubes.part_vertices() + part);
     hwy::Prefetch(cubes.part_apexes() + part);

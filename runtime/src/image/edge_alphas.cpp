@@ -38,58 +38,34 @@ HWY_INLINE double alpha_of(double a, double b, double isovalue, double epsilon) 
   return std::clamp(alpha, epsilon, 1.0 - epsilon) + 0.0;  // never -0, for which instruction sets differ
 }
 
-/// Interpolation parameters of a register of edges.
-class AlphaLanes {
- public:
-  using Tag = hn::ScalableTag<double>;
-  using Lanes = hn::Vec<Tag>;
-
-  HWY_INLINE AlphaLanes(double isovalue, double epsilon)
-      : isovalue_(isovalue),
-        epsilon_(epsilon),
-        threshold_(hn::Set(Tag(), isovalue)),
-        least_(hn::Set(Tag(), epsilon)),
-        most_(hn::Set(Tag(), 1.0 - epsilon)),
-        finite_(hn::Set(Tag(), std::numeric_limits<double>::max())) {}
-
-  HWY_INLINE void write(Lanes from, Lanes to, double* out) const {
-    const Tag d;
-    const auto difference = hn::Sub(to, from);
-    if (!hn::AllTrue(d, hn::Le(hn::Abs(difference), finite_))) {
-      double start[hn::MaxLanes(d)], end[hn::MaxLanes(d)];
-      hn::StoreU(from, d, start);
-      hn::StoreU(to, d, end);
-      for (std::size_t j = 0; j < hn::Lanes(d); ++j) out[j] = alpha_of(start[j], end[j], isovalue_, epsilon_);
-      return;
-    }
-    const auto alpha = hn::Div(hn::Sub(threshold_, from), difference);
-    hn::StoreU(hn::Add(hn::Min(hn::Max(alpha, least_), most_), hn::Zero(d)), d, out);
-  }
-
- private:
-  double isovalue_, epsilon_;
-  Lanes threshold_, least_, most_, finite_;
-};
-
 /// Interpolation parameters of some edges from the samples at their ends, of type double or float.
 template <class T>
 HWY_INLINE void alphas_of(const T* from, const T* to, std::size_t count, double isovalue, double epsilon, double* out) {
-  const AlphaLanes::Tag d;
-  const hn::Rebind<T, AlphaLanes::Tag> samples;
+  const hn::ScalableTag<double> d;
+  const hn::Rebind<T, decltype(d)> samples;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  const AlphaLanes lanes(isovalue, epsilon);
+  const auto threshold = hn::Set(d, isovalue);
+  const auto least = hn::Set(d, epsilon);
+  const auto most = hn::Set(d, 1.0 - epsilon);
+  const auto finite = hn::Set(d, std::numeric_limits<double>::max());
   const auto value = [&](const T* at) HWY_ATTR {
     if constexpr (std::is_same_v<T, double>)
       return hn::LoadU(d, at);
     else
       return hn::PromoteTo(d, hn::LoadU(samples, at));
   };
-  const auto some = [&](std::size_t i) HWY_ATTR { lanes.write(value(from + i), value(to + i), out + i); };
-  if (count < kLanes) {
-    for (std::size_t i = 0; i < count; ++i)
+  const auto each = [&](std::size_t first, std::size_t end) HWY_ATTR {
+    for (std::size_t i = first; i < end; ++i)
       out[i] = alpha_of(static_cast<double>(from[i]), static_cast<double>(to[i]), isovalue, epsilon);
-    return;
-  }
+  };
+  const auto some = [&](std::size_t i) HWY_ATTR {
+    const auto start = value(from + i);
+    const auto difference = hn::Sub(value(to + i), start);
+    if (!hn::AllTrue(d, hn::Le(hn::Abs(difference), finite))) return each(i, i + kLanes);
+    const auto alpha = hn::Div(hn::Sub(threshold, start), difference);
+    hn::StoreU(hn::Add(hn::Min(hn::Max(alpha, least), most), hn::Zero(d)), d, out + i);
+  };
+  if (count < kLanes) return each(0, count);
   std::size_t i = 0;
   for (; i + kLanes <= count; i += kLanes) some(i);
   if (i < count) some(count - kLanes);  // some are computed twice
@@ -164,19 +140,6 @@ void alphas_of_ends(const double* from, const double* to, std::size_t count, dou
 
 /// Interpolation parameters of all edges of a 4D tile, critical or not.
 void alphas_4d(const double* corners, double isovalue, double epsilon, double* out) {
-  const AlphaLanes::Tag d;
-  const AlphaLanes lanes(isovalue, epsilon);
-#if HWY_TARGET <= HWY_AVX3
-  // The eight edges along an axis are one register. Loads of ends that have just been stored one by one would wait.
-  const auto lower = hn::LoadU(d, corners), upper = hn::LoadU(d, corners + 8);
-  // pairs of corners with y = 0 and with y = 1
-  const AlphaLanes::Lanes front{_mm512_shuffle_f64x2(lower.raw, upper.raw, 0x88)};
-  const AlphaLanes::Lanes back{_mm512_shuffle_f64x2(lower.raw, upper.raw, 0xDD)};
-  lanes.write(hn::ConcatEven(d, upper, lower), hn::ConcatOdd(d, upper, lower), out);
-  lanes.write(front, back, out + 8);
-  lanes.write(hn::ConcatLowerLower(d, upper, lower), hn::ConcatUpperUpper(d, upper, lower), out + 16);
-  lanes.write(lower, upper, out + 24);
-#else
   constexpr unsigned kEdges = tables::edge_count(4);
   double from[kEdges];
   double to[kEdges];
@@ -186,9 +149,7 @@ void alphas_4d(const double* corners, double isovalue, double epsilon, double* o
       from[a * (kEdges / 4) + i] = corners[base];
       to[a * (kEdges / 4) + i] = corners[base | 1u << a];
     }
-  for (std::size_t i = 0; i < kEdges; i += hn::MaxLanes(d))
-    lanes.write(hn::LoadU(d, from + i), hn::LoadU(d, to + i), out + i);
-#endif
+  alphas_of(from, to, kEdges, isovalue, epsilon, out);
 }
 
 /// Interpolation parameters of all edges of cells.

@@ -412,7 +412,7 @@ template <int N>
 ResolvedSize Counter<N>::assemble(const ResolvedTile& tile, ResolvedTesseract& tesseract,
                                   AssembledTiles* assembled) const {
   if (assembled == nullptr || assembled->is_full()) return tesseract.size(tile.key, tile.lists);
-  const ResolvedView& filling = tesseract.describe(tile.key, tile.lists, tile.apart);
+  const ResolvedView& filling = tesseract.find(tile.key, tile.lists, tile.apart);
   assembled->add(tile, filling, most_assembled_);
   return {filling.simplex_count, filling.own_vertices};
 }

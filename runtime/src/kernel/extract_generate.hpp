@@ -86,7 +86,6 @@ class TileWriter {
     const std::uint16_t* listed;                  ///< positions of the tiles; null: `active` has them
     Index next;                                   ///< number of the next own vertex
     RowOfTesseracts* tesseracts = nullptr;        ///< N = 4, if resolved from the data without a caller's estimator
-    const Simplex* end_of_row = nullptr;          ///< N = 4, if resolved from the data: one past its simplices
     const AssembledTiles* assembled = nullptr;    ///< with `tesseracts`: the row's first tiles may be kept here
     std::size_t at = 0, end = 0;                  ///< offset of the next one, and the end
     CubesOfTiles* cubes = nullptr;                ///< N = 4, if resolved from the data
@@ -120,7 +119,7 @@ class TileWriter {
           if (own.at < own.end) {
             const ResolvedView filling = own.assembled->read(own.at, tile);
             return own.writer.write_resolved(*own.cubes, own.index, key, tile, filling, edge_ids, own.next, *own.cells,
-                                             out, static_cast<std::size_t>(own.end_of_row - out));
+                                             out);
           }
           tile = own.writer.tile_of(own, static_cast<std::uint32_t>(ordinal), key);
           return own.writer.write_resolved(*own.cubes, own.index, key, tile,
@@ -170,7 +169,6 @@ class TileWriter {
                                           const RowTiles& tiles, TilesWithOwnVertices& own) const noexcept {
     CubesOfTiles cubes(own.view, own.row);
     own.cubes = &cubes;
-    own.end_of_row = output.out + own.view.slab->simplices(own.row);
     RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles, *own.scratch.of_word);
     if (!estimator_->is_callers()) own.tesseracts = &tesseracts;
     const Slab<N>& slab = *own.view.slab;
@@ -320,10 +318,10 @@ class TileWriter {
   }
 
   /// Writes a resolved 4D tile. Its own vertices are numbered from `own` on; `own` is advanced. `edge_ids`: numbers of
-  /// its edges' vertices. `cubes`: of its row. `room`: of write_cone, if the filling may be only described.
+  /// its edges' vertices. `cubes`: of its row.
   Simplex* write_resolved(CubesOfTiles& cubes, const typename RowShape<N>::Index& index, unsigned signature,
                           const ResolvedTile& tile, const ResolvedView& filling, const Index* edge_ids, Index& own,
-                          OwnCells& cells, Simplex* out, std::size_t room = 0) const noexcept {
+                          OwnCells& cells, Simplex* out) const noexcept {
     // numbers of the cubes' vertices: of as many as a cube can have, without a branch on how many it has
     std::array<Index, ResolvedCubes::kCubes * ResolvedCubes::kMostOwn> cube_ids;
     for (unsigned rest = tile.with_vertices; rest != 0; rest &= rest - 1) {
@@ -332,13 +330,9 @@ class TileWriter {
       for (unsigned j = 0; j < ResolvedCubes::kMostOwn; ++j) cube_ids[ResolvedCubes::kMostOwn * cube + j] = first + j;
     }
     if constexpr (N == 4) {
-      const Index* const of_cubes = tile.with_vertices != 0 ? cube_ids.data() : nullptr;
-      if (filling.simplices == nullptr)
-        write_cone({&ResolvedCubes::instance(), &tile.lists, filling.simplex_count, filling.apex, edge_ids, of_cubes,
-                    own, flip_},
-                   room, out);
-      else
-        write_numbers({filling.simplices, filling.simplex_count, edge_ids, of_cubes, own, flip_}, out);
+      write_numbers(LocalSimplices{filling.simplices, filling.simplex_count, edge_ids,
+                                   tile.with_vertices != 0 ? cube_ids.data() : nullptr, own, flip_},
+                    out);
       // after the simplices: `index` has just been written in parts, and reading it as a whole would wait
       cells.add(filling, tile.lists, estimator_->triangulation(), index, signature, own);
     }

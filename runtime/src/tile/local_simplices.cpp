@@ -5,12 +5,8 @@
 #include "tile/local_simplices.hpp"
 
 #include <algorithm>
-#include <type_traits>
-#include <utility>
 
 #include "builder4.hpp"
-#include "tegl/table_contract.hpp"
-#include "tegl/tile/corners.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tile/local_simplices.cpp"
@@ -119,16 +115,6 @@ void map_local(const std::uint8_t* from, std::size_t count, const std::uint64_t*
 
 using builders::ResolvedCubes;
 
-/// By local vertex: the cubes all of whose triangles in a cone have the apex, as bits: those with its edge.
-constexpr auto kCubesWith = [] {
-  std::array<std::uint8_t, 256> with{};
-  for (unsigned e = 0; e < ResolvedCubes::kEdges; ++e)
-    for (unsigned f = 0; f < ResolvedCubes::kCubes; ++f)
-      if (e / 8 != f / 2 && (edge_base(4, e) >> (f / 2) & 1u) == f % 2)
-        with[e] = static_cast<std::uint8_t>(with[e] | 1u << f);
-  return with;
-}();
-
 /// Maps the triangles' vertices and sets the apex.
 std::uint32_t* cone_local(const ResolvedCubes::Triangles* triangles, std::size_t count, unsigned apex,
                           std::uint32_t* out) {
@@ -154,78 +140,6 @@ std::uint32_t* cone_local(const ResolvedCubes::Triangles* triangles, std::size_t
 #endif
 }
 
-/// Assembles a cone and writes its numbers.
-void write_assembled(const LocalCone& cone, Simplex* out) {
-  std::array<std::uint32_t, ResolvedCubes::kCubes * ResolvedCubes::kMostTriangles + kMoreSimplices + 1> simplices;
-  std::array<ResolvedCubes::Triangles, ResolvedCubes::kCubes> triangles;
-  for (unsigned f = 0; f < ResolvedCubes::kCubes; ++f) {
-    triangles[f] = cone.cubes->triangles(f, (*cone.lists)[f]);
-    if ((kCubesWith[cone.apex] >> f & 1u) != 0) triangles[f].count = 0;
-  }
-  cone_local(triangles.data(), triangles.size(), cone.apex, simplices.data());
-  write_local({reinterpret_cast<const std::uint8_t*>(simplices.data()), cone.count, cone.of_edges, cone.of_cubes,
-               cone.own, cone.flip},
-              out);
-}
-
-#if HWY_TARGET <= HWY_AVX3
-
-/// Writes cones without assembling them: the 16 vertices of a cube have their numbers in one register.
-template <bool kHasCubes, bool kFlip>
-HWY_INLINE void cone_by_registers(const LocalCone& cone, Simplex* out) {
-  const __m512i edges[2] = {_mm512_loadu_si512(cone.of_edges), _mm512_loadu_si512(cone.of_edges + 16)};
-  __m512i cubes[2] = {_mm512_setzero_si512(), _mm512_setzero_si512()};
-  if constexpr (kHasCubes)
-    for (unsigned i = 0; i < 2; ++i) cubes[i] = _mm512_loadu_si512(cone.of_cubes + 16 * i);
-  const Index apex = cone.apex < ResolvedCubes::kEdges ? cone.of_edges[cone.apex] : cone.own;
-  const __m512i apexes = _mm512_set1_epi32(static_cast<int>(apex));
-  const ResolvedCubes cubes_of = *cone.cubes;  // a copy: the simplices that are written might alias it
-  const ResolvedCubes::Lists& lists = *cone.lists;
-  const unsigned kept = ~unsigned{kCubesWith[cone.apex]};
-  const auto add = [&]<unsigned Cube>(std::integral_constant<unsigned, Cube>) HWY_ATTR {
-    const auto bytes = [](const std::uint8_t* from) HWY_ATTR {
-      return _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
-    };
-    // numbers 32 + 4 * Cube + j of own vertices are found in `cubes` by their lowest five bits, as those of edges
-    const __m512i lifted = bytes(ResolvedCubes::lifted(Cube).data());
-    __m512i numbers = _mm512_permutex2var_epi32(edges[0], lifted, edges[1]);
-    if constexpr (kHasCubes)
-      numbers = _mm512_mask_mov_epi32(numbers, 0xF000, _mm512_permutex2var_epi32(cubes[0], lifted, cubes[1]));
-    const ResolvedCubes::Triangles triangles = cubes_of.triangles(Cube, lists[Cube]);
-    const std::uint32_t count = triangles.count & (0u - (kept >> Cube & 1u));
-    const auto write_four = [&](std::uint32_t t) HWY_ATTR {
-      __m512i simplices =
-          _mm512_mask_permutexvar_epi32(apexes, 0xEEEE, bytes(triangles.words + 4 * std::size_t{t}), numbers);
-      if (ResolvedCubes::is_reversed(Cube) != kFlip) simplices = _mm512_shuffle_epi32(simplices, _MM_PERM_CDBA);
-      _mm512_storeu_si512(out + t, simplices);
-    };
-    // Always eight, few lists have more: their number is hard to predict.
-    write_four(0);
-    write_four(4);
-    for (std::uint32_t t = 8; t < count; t += 4) write_four(t);
-    out += count;
-  };
-  [&]<unsigned... Cube>(std::integer_sequence<unsigned, Cube...>) HWY_ATTR {
-    (add(std::integral_constant<unsigned, Cube>()), ...);
-  }
-  (std::make_integer_sequence<unsigned, ResolvedCubes::kCubes>());
-}
-
-#endif
-
-void cone_numbers(const LocalCone& cone, std::size_t room, Simplex* out) {
-#if HWY_TARGET <= HWY_AVX3
-  if (cone.count + 8 <= room) {
-    if (cone.of_cubes == nullptr)
-      return cone.flip ? cone_by_registers<false, true>(cone, out) : cone_by_registers<false, false>(cone, out);
-    return cone.flip ? cone_by_registers<true, true>(cone, out) : cone_by_registers<true, false>(cone, out);
-  }
-#else
-  static_cast<void>(room);
-#endif
-  write_assembled(cone, out);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace tegl::detail
 HWY_AFTER_NAMESPACE();
@@ -238,12 +152,6 @@ HWY_EXPORT(write_local);
 
 void write_numbers(const LocalSimplices& simplices, std::array<Index, 4>* out) noexcept {
   HWY_DYNAMIC_DISPATCH(write_local)(simplices, out);
-}
-
-HWY_EXPORT(cone_numbers);
-
-void write_cone(const LocalCone& cone, std::size_t room, std::array<Index, 4>* out) noexcept {
-  HWY_DYNAMIC_DISPATCH(cone_numbers)(cone, room, out);
 }
 
 HWY_EXPORT(map_local);

@@ -26,21 +26,6 @@ struct LocalSimplices {
 /// Writes the vertex numbers of all simplices to `out`.
 void write_numbers(const LocalSimplices& simplices, std::array<Index, 4>* out) noexcept;
 
-/// A 4D tile that is one cone (builders::ResolvedView::apex).
-struct LocalCone {
-  const builders::ResolvedCubes* cubes;
-  const builders::ResolvedCubes::Lists* lists;
-  std::uint32_t count;    ///< of its tetrahedra
-  unsigned apex;          ///< local vertex
-  const Index* of_edges;  ///< these are as in LocalSimplices
-  const Index* of_cubes;
-  Index own;
-  bool flip;
-};
-/// Writes the vertex numbers of all its simplices to `out`, equal to those of the assembled tile. `room`: number of
-/// simplices from `out` on that may be overwritten.
-void write_cone(const LocalCone& cone, std::size_t room, std::array<Index, 4>* out) noexcept;
-
 /// Maps the local vertices of tetrahedra by the 32 entries of `to`, the bytes of four words from the lowest on. `swap`:
 /// exchanges the last two. Reads and writes up to kMoreSimplices tetrahedra past the end.
 inline constexpr std::size_t kMoreSimplices = 15;

@@ -11,7 +11,6 @@
 #include <bit>
 #include <bitset>
 #include <map>
-#include <numeric>
 #include <random>
 #include <set>
 #include <span>
@@ -460,58 +459,6 @@ TEST(ResolvedCones, VectorInstructionsAddTheSame) {
       }
     }
   }
-}
-
-/// Tiles with random faces, whose contour is often one cone.
-TEST(ResolvedCones, DescribedConesHaveTheAssembledNumbers) {
-  std::mt19937 random(7);
-  ResolvedTesseract assembles = make_resolved_tesseract(Triangulation::compact);
-  ResolvedTesseract describes = make_resolved_tesseract(Triangulation::compact);
-  std::array<Index, ResolvedCubes::kEdges> of_edges;
-  std::array<Index, ResolvedCubes::kVertices - ResolvedCubes::kEdges> of_cubes;
-  std::iota(of_edges.begin(), of_edges.end(), Index{1000});
-  std::iota(of_cubes.begin(), of_cubes.end(), Index{2000});
-  constexpr Index kOwn = 3000;
-  std::size_t own_apexes = 0, with_cubes = 0, others = 0;
-  for (unsigned i = 0; i < 20000; ++i) {
-    ResolvedKey key;
-    key.signature = static_cast<std::uint16_t>(random());
-    key.squares = random() & 0xffffffu;
-    key.high_cubes = static_cast<std::uint8_t>(random());
-    key.low_cubes = static_cast<std::uint8_t>(~key.high_cubes & random());
-    const ResolvedCubes::Lists lists = ResolvedTesseract::lists_of(key);
-    const ResolvedView& filling = assembles.find(key, lists);
-    const ResolvedView& cone = describes.describe(key, lists, ResolvedTesseract::kNotKnown);
-    ASSERT_EQ(cone.simplex_count, filling.simplex_count) << i;
-    ASSERT_EQ(cone.own_vertices, filling.own_vertices) << i;
-    ASSERT_TRUE(std::equal(cone.masks, cone.masks + cone.own_vertices, filling.masks)) << i;
-    if (cone.simplices != nullptr) {
-      ++others;
-      continue;
-    }
-    const bool has_cubes = std::any_of(lists.begin(), lists.end(),
-                                       [](unsigned list) { return ResolvedCubes::instance().own_vertices(list) != 0; });
-    own_apexes += cone.own_vertices;
-    with_cubes += has_cubes ? 1 : 0;
-    for (const bool flip : {false, true}) {
-      using Numbers = std::vector<std::array<Index, 4>>;
-      Numbers expected(cone.simplex_count);
-      const Index* const numbers = has_cubes ? of_cubes.data() : nullptr;
-      write_numbers({filling.simplices, filling.simplex_count, of_edges.data(), numbers, kOwn, flip}, expected.data());
-      for (const std::size_t more : {0, 7, 8, 100}) {
-        const std::array<Index, 4> kept = {1, 2, 3, 4};
-        Numbers found(cone.simplex_count + more + 1, kept);
-        write_cone(
-            {&ResolvedCubes::instance(), &lists, cone.simplex_count, cone.apex, of_edges.data(), numbers, kOwn, flip},
-            cone.simplex_count + more, found.data());
-        ASSERT_TRUE(std::equal(expected.begin(), expected.end(), found.begin())) << i << ", room for more: " << more;
-        ASSERT_EQ(found.back(), kept) << i << ", room for more: " << more;
-      }
-    }
-  }
-  EXPECT_GT(own_apexes, 1000u);
-  EXPECT_GT(with_cubes, 100u);
-  EXPECT_GT(others, 1000u);
 }
 
 }  // namespace
