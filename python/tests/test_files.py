@@ -255,6 +255,8 @@ def test_xarrays_keep_the_lattice(tmp_path):
     assert_same(tegl.contour(data, 0.1, lattice="cubic"), image.contour(0.1, lattice="cubic"))
     with pytest.raises(ValueError, match="on the lattice fcc, which only tegl.contour and tegl.count know"):
         tegl.slice(data, 0.1, at=1.5)
+    with pytest.raises(ValueError, match="the lattice 'fcc' is for the axes .*; expected the same axes in this order"):
+        tegl.contour(data.transpose(*data.dims[::-1]), 0.1)
     data.attrs["sample_lattice"] = "hex"
     with pytest.raises(ValueError, match="the attribute 'sample_lattice' is 'hex'; expected one of"):
         tegl.contour(data, 0.1)
@@ -283,6 +285,10 @@ def test_xarrays_keep_the_affine_map():
     assert_same(tegl.contour(data[2], 0.1, affine=np.eye(4)), tegl.contour(values[2], 0.1, axis_names=("z", "y", "x")))
     with pytest.raises(ValueError, match="the attribute 'affine' is for the axes t, z, y, x, and the array has t, z, x; expected the"):
         tegl.contour(data[:, :, 2], 0.1)
+    # without the names of its axes, the attribute is another program's
+    other = data.copy()
+    del other.attrs["affine_axes"]
+    assert_same(tegl.contour(other, 0.1), tegl.contour(values, 0.1, axis_names=("t", "z", "y", "x"), axis_units=("s", "", "", "")))
     data.attrs["affine"] = [1, 2]
     with pytest.raises(ValueError, match=r"the attribute 'affine' has the shape \(2,\); expected \(4, 5\)"):
         tegl.contour(data, 0.1)

@@ -14,8 +14,7 @@ namespace tegl::detail {
 
 /// Blocks of at least this many bytes (2 MiB) are allocated as huge pages, if the system has them.
 inline constexpr std::size_t kLargeBlock = std::size_t{1} << 21;
-/// Allocates memory without touching it: pages that are never written cost address space only,
-/// unless they are kept ones (KeptPages). Throws std::bad_alloc.
+/// Allocates memory without touching it: pages that are never written cost address space only. Throws std::bad_alloc.
 void* allocate_large_block(std::size_t bytes);
 void free_large_block(void* block, std::size_t bytes) noexcept;
 

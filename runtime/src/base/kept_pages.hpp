@@ -8,8 +8,9 @@
 
 namespace tegl::detail {
 
-/// While one exists, large blocks (allocate_large_block) of all threads get the pages of freed ones. The last one to be
-/// destroyed frees the pages that are left. Without effect on systems other than Linux.
+/// While one exists, large blocks (allocate_large_block) of all threads get the pages of freed ones, also where they
+/// are never used. The last one to be destroyed frees the pages that are left. Without effect on systems other than
+/// Linux.
 class KeptPages {
  public:
   /// `most`: bytes that are kept; more are freed. Of several objects, the largest number holds.

@@ -586,10 +586,15 @@ TEST(PointTable, ColumnsOfOneNameAreErrorsIfTheyAreRead) {
     write_file(dir / "a.csv", names + "\n0,0,1,5\n1,0,2,5\n0,1,3,5\n");
     expect_error(ErrorCode::MalformedFile, parts, [&] { (void)read(dir / "a.csv", options); });
   };
-  refused("x,X,y,v", {"a.csv", "columns 1 and 2", "'x'"});
-  refused("lon,lat,lat,v", {"columns 2 and 3", "'lat'"});
+  refused("x,X,y,v", {"a.csv", "columns 1 ('x') and 2 ('X')"});
+  refused("lon,lat,lat,v", {"columns 2 ('lat') and 3 ('lat')"});
   options.variable = "v";
-  refused("x,y,v,v", {"columns 3 and 4", "'v'", "different names"});
+  refused("x,y,v,v", {"columns 3 ('v') and 4 ('v')", "different names"});
+  // the chosen column is no coordinate, and lower case comes first
+  options.variable = "X";
+  write_file(dir / "b.csv", "X,x,y,v\n1,0,0,5\n2,1,0,5\n3,0,1,5\n");
+  EXPECT_THAT(read(dir / "b.csv", options).values, testing::ElementsAre(1, 2, 3));
+  options.variable = "v";
   // columns that are not read may have any names
   write_file(dir / "b.csv", "x,y,v,note,note\n0,0,1,a,a\n1,0,2,b,b\n0,1,3,c,c\n");
   EXPECT_THAT(read(dir / "b.csv", options).values, testing::ElementsAre(1, 2, 3));

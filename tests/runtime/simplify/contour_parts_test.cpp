@@ -40,11 +40,12 @@ Contour<N, double> contour_of_parts() {
 }
 
 template <int N>
-EdgeCollapse<N> collapse_of(const Contour<N, double>& contour) {
+EdgeCollapse<N> collapse_of(const Contour<N, double>& contour,
+                            double tolerance = std::numeric_limits<double>::infinity()) {
   detail::CollapseInput<N> input;
   input.simplices = contour.simplices;
   input.points.assign(contour.vertices.begin(), contour.vertices.end());
-  input.tolerance.assign(contour.vertices.size(), std::numeric_limits<double>::infinity());
+  input.tolerance.assign(contour.vertices.size(), tolerance);
   input.scale.fill(1.0);
   return EdgeCollapse<N>(std::move(input));
 }
@@ -156,6 +157,26 @@ TYPED_TEST(Parts, ContractTheSameEdgesOnAnyNumberOfThreads) {
     EXPECT_EQ(other.vertices, in_parts.vertices);
   }
   expect_same_topology(check(contour), check(in_parts));
+}
+
+/// A tolerance stops contractions before the goal. Whether it did does not depend on the number of threads either.
+TYPED_TEST(Parts, RespectTolerances) {
+  constexpr int N = TypeParam::value;
+  const Contour<N, double> contour = contour_of_parts<N>();
+  const auto removed = [&](double tolerance, unsigned threads) {
+    EdgeCollapse<N> collapse = collapse_of(contour, tolerance);
+    detail::CollapseGoal goal;
+    goal.threads = threads;
+    goal.least_in_parts = 0;
+    detail::collapse_by_quadrics(collapse, goal);
+    return std::pair(contour.simplices.size() - collapse.complex().alive(), collapse.is_limited());
+  };
+  const auto [narrow, is_limited] = removed(0.05, 1);
+  EXPECT_TRUE(is_limited);
+  EXPECT_GT(narrow, 0u);
+  EXPECT_GT(removed(0.5, 1).first, narrow);
+  for (const unsigned threads : {2u, 3u}) EXPECT_EQ(removed(0.05, threads), std::pair(narrow, is_limited));
+  EXPECT_FALSE(removed(std::numeric_limits<double>::infinity(), 2).second);
 }
 
 }  // namespace
