@@ -212,11 +212,19 @@ def test_contours_of_divided_cells():
 
 
 def test_contours_of_divided_cells_in_5d():
-    ball = 0.7 - np.sqrt(sum(x**2 for x in np.meshgrid(*[np.linspace(-1, 1, 5)] * 5, indexing="ij")))
+    def ball_of(samples):
+        return 0.7 - np.sqrt(sum(x**2 for x in np.meshgrid(*[np.linspace(-1, 1, samples)] * 5, indexing="ij")))
+
+    # the interpolated ball lies inside; the error is of order 2
+    content = 8 / 15 * np.pi**2 * 0.7**5
+    errors = [1 - tegl.contour(ball_of(n), 0.0, division="kuhn", spacing=2 / (n - 1)).measure().content / content for n in (7, 9)]
+    assert 0 < errors[1] < 0.21 and errors[1] / errors[0] == pytest.approx((6 / 8)**2, rel=0.1)
+    ball = ball_of(5)
+    expected = tegl.contour(ball, 0.0, division="kuhn", spacing=0.5).measure().content
     for division in ("kuhn", "symmetric"):
         surface = tegl.contour(ball, 0.0, division=division, spacing=0.5)
         assert surface.check().is_closed and surface.check().euler == 2
-        assert surface.measure().content == pytest.approx(8 / 15 * np.pi**2 * 0.7**5, rel=0.3)
+        assert surface.measure().content == pytest.approx(expected, rel=0.01)
         assert tuple(tegl.count(ball, 0.0, division=division)) == (len(surface.vertices), len(surface.simplices))
     with pytest.raises(ValueError, match="division hybrid of a 5D image; expected kuhn or symmetric"):
         tegl.contour(ball, 0.0, division="hybrid")
