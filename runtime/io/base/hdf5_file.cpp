@@ -207,8 +207,10 @@ H5Table H5File::create_table(hid_t group, const char* name, hid_t file_type, std
   // A chunk fits the cache that HDF5 has per dataset (1 MiB), so a partly filled chunk stays in memory.
   constexpr hsize_t kChunkBytes = hsize_t{1} << 19;
   const hsize_t most_rows = kChunkBytes / (H5Tget_size(file_type) * std::max<hsize_t>(1, columns));
-  H5Iinc_ref(group);  // the group stays open until the dataset is created
-  const auto parent = std::make_shared<const H5Handle>(group, H5Gclose);
+  // The group stays open until the dataset is created. Two steps: nothing is lost if there is no memory for the second.
+  H5Iinc_ref(group);
+  H5Handle counted(group, H5Gclose);
+  const auto parent = std::make_shared<const H5Handle>(std::move(counted));
   const auto create = [this, parent, text = std::string(name), file_type, columns, most_rows,
                        compression](std::uint64_t rows) {
     const int rank = columns == 0 ? 1 : 2;
