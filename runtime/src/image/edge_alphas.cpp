@@ -107,9 +107,8 @@ void alphas_of_row(const FloatRowEdges& row, double isovalue, double epsilon, do
       Word bits = edges.critical[x / kWordBits] >> shift;
       if (shift > kWordBits - kLanes) bits |= edges.critical[x / kWordBits + 1] << (kWordBits - shift);
       bits &= (Word{1} << kLanes) - (Word{1} << skipped);
-      const auto chosen = mask_of(d, bits);
-      hn::StoreU(hn::Compress(hn::LoadU(d, edges.starts + x), chosen), d, from + count);
-      hn::StoreU(hn::Compress(hn::LoadU(d, edges.ends + x), chosen), d, to + count);
+      hn::StoreU(chosen_lanes(d, hn::LoadU(d, edges.starts + x), bits), d, from + count);
+      hn::StoreU(chosen_lanes(d, hn::LoadU(d, edges.ends + x), bits), d, to + count);
       count += static_cast<std::size_t>(std::popcount(bits));
     };
     const std::size_t end = std::min(first + kBlock, edges.edges);

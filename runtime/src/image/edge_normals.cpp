@@ -220,12 +220,12 @@ HWY_INLINE void interpolate(const EdgesOfRow<N>& edges) {
   for (std::size_t x = 0; x < samples; x += kLanes) {
     const Word bits = critical[x / kWordBits] >> (x % kWordBits) & ((Word{1} << kLanes) - 1);
     const auto count = static_cast<std::size_t>(std::popcount(bits));
-    const auto chosen = mask_of(d, bits);
-    const auto alpha = positions.at(x, chosen, count);
+    const auto alpha = positions.at(x, mask_of(d, bits), count);
     for (unsigned a = 0; a < N; ++a) {
       const auto here = hn::LoadU(d, first + a * pitch + x);
       const auto there = hn::LoadU(d, second + a * pitch + x);
-      hn::StoreU(hn::Compress(hn::Add(here, hn::Mul(alpha, hn::Sub(there, here))), chosen), d, out + a * pitch);
+      const auto between = hn::Add(here, hn::Mul(alpha, hn::Sub(there, here)));
+      hn::StoreU(chosen_lanes(d, between, bits), d, out + a * pitch);
     }
     out += count;
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Vector code that several files share: masks from bits, and stores of points. Files that Highway compiles once per
-// instruction set include this after Highway's headers, so it is read once per instruction set.
+// Vector code that several files share: masks from bits, lanes that bits choose, and stores of points. Files that
+// Highway compiles once per instruction set include this after Highway's headers, so it is read once per instruction
+// set.
 #if defined(TEGL_IMAGE_VECTORS) == defined(HWY_TARGET_TOGGLE)
 #ifdef TEGL_IMAGE_VECTORS
 #undef TEGL_IMAGE_VECTORS
@@ -30,6 +31,46 @@ HWY_INLINE hwy::HWY_NAMESPACE::Mask<D> mask_of(D d, Word bits) {
 #else
   alignas(8) const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8)};
   return hwy::HWY_NAMESPACE::LoadMaskBits(d, bytes);
+#endif
+}
+
+#if HWY_TARGET > HWY_AVX3 && HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
+
+/// By the bits of four or eight lanes: the numbers of the set ones in ascending order, then zeros.
+template <std::size_t Lanes, std::size_t BytesOfLane>
+struct ChosenLanes {
+  alignas(16) std::array<std::array<std::uint8_t, Lanes * BytesOfLane>, std::size_t{1} << Lanes> bytes{};
+  constexpr ChosenLanes() {
+    for (std::size_t bits = 0; bits < bytes.size(); ++bits)
+      for (std::size_t lane = 0, at = 0; lane < Lanes; ++lane)
+        if ((bits >> lane & 1u) != 0)
+          for (std::size_t b = 0; b < BytesOfLane; ++b)
+            bytes[bits][at++] = static_cast<std::uint8_t>(BytesOfLane * lane + b);
+  }
+};
+inline constexpr ChosenLanes<8, 1> kChosen8;  // numbers of lanes
+inline constexpr ChosenLanes<4, 4> kChosen4;  // numbers of bytes
+
+#endif
+
+/// The lanes of `bits`, in ascending order; the others are undefined. Without AVX-512 by tables of our own: compilers
+/// copy Highway's to the stack for each register.
+template <class D>
+HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> chosen_lanes(D d, hwy::HWY_NAMESPACE::Vec<D> v, Word bits) {
+  static_assert(sizeof(hwy::HWY_NAMESPACE::TFromD<D>) == 4);
+#if HWY_TARGET <= HWY_AVX3 || HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
+  return hwy::HWY_NAMESPACE::Compress(v, mask_of(d, bits));
+#elif HWY_TARGET == HWY_AVX2
+  const auto* const numbers = reinterpret_cast<const __m128i*>(kChosen8.bytes[bits & 0xff].data());
+  const __m256i lanes = _mm256_cvtepu8_epi32(_mm_loadl_epi64(numbers));
+  static_cast<void>(d);
+  return hwy::HWY_NAMESPACE::Vec<D>{_mm256_permutevar8x32_ps(v.raw, lanes)};
+#else
+  namespace hn = hwy::HWY_NAMESPACE;
+  static_assert(hn::MaxLanes(D()) == 4);
+  const hn::Repartition<std::uint8_t, D> bytes;
+  const auto from = hn::Load(bytes, kChosen4.bytes[bits & 0xf].data());
+  return hn::BitCast(d, hn::TableLookupBytes(hn::BitCast(bytes, v), from));
 #endif
 }
 
