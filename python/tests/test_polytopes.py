@@ -45,13 +45,13 @@ def duoprism():
 
 @pytest.mark.parametrize("triangulation", ["compact", "barycentric"])
 def test_a_ball_in_24_cells_is_a_sphere(triangulation):
-    points, cells = cells24(9)
-    values = 3.7 - np.linalg.norm(points, axis=1)
+    points, cells = cells24(7)
+    values = 2.7 - np.linalg.norm(points, axis=1)
     contour = tegl.contour_mesh(points, {"polytope": cells}, values, 0.0, triangulation=triangulation, dtype=np.float64)
     report = contour.check()
     assert report.is_closed and report.euler == 0 and report.components == 1
-    content = np.pi**2 / 2 * 3.7**4
-    assert abs(contour.measure().content / content - 1) < 0.15
+    content = np.pi**2 / 2 * 2.7**4
+    assert abs(contour.measure().content / content - 1) < 0.25
     cut = contour.slice(axis=3, at=0.1)
     assert cut.check().is_closed and cut.check().euler == 2
     size = tegl.count_mesh(points, {"polytope": cells}, values, 0.0, triangulation=triangulation)
@@ -62,12 +62,16 @@ def test_a_ball_in_24_cells_is_a_sphere(triangulation):
 
 
 def test_noise_is_closed_with_every_rule():
-    points, cells = cells24(3)
-    values = np.random.default_rng(1).random(len(points))
+    points, cells = cells24(4)
+    around = np.zeros(len(points), dtype=int)
+    for cell in cells:
+        around[list({v for facet in cell for face in facet for v in face})] += 1
+    # low at the border: eight cells are around each other point
+    values = np.where(around == 8, np.random.default_rng(1).random(len(points)), 0.0)
     for ambiguity in ("low", "high", "mean", "saddle", "squares", "decider"):
         inside = tegl.contour_mesh(points, {"polytope24": cells}, values, 0.5, ambiguity=ambiguity)
-        assert len(inside.simplices) > 100
-        one = tegl.contour_mesh(points, {"polytope": cells[:1]}, values, 0.5, ambiguity=ambiguity, close=True)
+        assert len(inside.simplices) > 100 and inside.check().is_closed
+        one = tegl.contour_mesh(points, {"polytope": cells[:1]}, values + 0.4 * (around != 8), 0.5, ambiguity=ambiguity, close=True)
         assert one.check().is_closed
 
 
