@@ -51,7 +51,7 @@ requires DimensionBetween<N, 2, 5>
 /// Extracts the contour of an image whose cells are divided. In 2D to 4D it is the contour of `divided_complex`. In 5D
 /// the simplices are not stored; the contour is an oriented manifold with a boundary at the image border only. Its
 /// vertices lie on the edges of the division, in the order of the cells, and if samples equal the isovalue, they are
-/// kept off the layers of the last two axes as those of `extract`. Between two simplices of high and of low points, a
+/// kept off the layers of the last two axes as by `extract`. Between two simplices of high and of low points, a
 /// simplex has the monotone paths through the product of the two, with points in the order of their coordinates, the
 /// last axis first. So contours do not intersect themselves, and their cut at a layer is, up to diagonals, the divided
 /// contour of the layer.
@@ -69,7 +69,7 @@ requires DimensionBetween<N, 2, 5>
   return extract_divided_with_stats<Real>(image, division, isovalue, options).contour;
 }
 
-/// Counts the vertices and simplices that `extract_divided` would make, exactly. Errors: those of `extract_divided`
+/// Counts the vertices and simplices that `extract_divided` would make, exactly. Errors: as `extract_divided`
 /// except TooLarge in 5D.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
