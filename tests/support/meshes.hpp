@@ -212,9 +212,9 @@ std::vector<double> closed_noise(const MeshData<N>& mesh, std::uint64_t seed) {
   return values;
 }
 
-/// A field at the points of a mesh.
-template <int N, class Field>
-std::vector<double> values_of(const MeshData<N>& mesh, const Field& field) {
+/// A field at the points of a mesh: MeshData, FacedMesh or FacetedMesh.
+template <class Mesh, class Field>
+std::vector<double> values_of(const Mesh& mesh, const Field& field) {
   std::vector<double> values;
   for (const auto& point : mesh.points) values.push_back(field(point));
   return values;

@@ -370,12 +370,4 @@ inline FacedMesh merged(const FacedMesh& from, double probability, std::uint64_t
   return mesh;
 }
 
-/// A field at the points.
-template <class Field>
-std::vector<double> values_of(const FacedMesh& mesh, const Field& field) {
-  std::vector<double> values;
-  for (const auto& point : mesh.points) values.push_back(field(point));
-  return values;
-}
-
 }  // namespace tegl::test

@@ -301,12 +301,4 @@ inline FacetedMesh with_prisms(FacetedMesh mesh, double factor = 1.5) {
   return mesh;
 }
 
-/// A field at the points.
-template <class Field>
-std::vector<double> values_of(const FacetedMesh& mesh, const Field& field) {
-  std::vector<double> values;
-  for (const Point4& point : mesh.points) values.push_back(field(point));
-  return values;
-}
-
 }  // namespace tegl::test
