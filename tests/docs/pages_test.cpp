@@ -331,4 +331,17 @@ TEST(Facets, OfAMeshHaveTheNumbersOfTheirCells) {
   EXPECT_EQ(polygons.down(2, 0).size(), 4u);
 }
 
+TEST(Facets, OfAPeriodicLatticeAreClosed) {
+  tegl::OwnedImage<float, 3> samples;
+  samples.grid = tegl::Grid<3>::unit({4, 5, 6});
+  for (int i = 0; i < 120; ++i) samples.values.push_back(static_cast<float>(i % 7) - 2.5f);
+  // [facets_of_a_lattice]
+  // An image on fcc that is periodic along all axes: a closed complex.
+  const auto periods = tegl::sample_periods(samples.grid, std::array{0, 1, 2});
+  const auto closed = tegl::extract_facets<double>(samples.view(), tegl::Lattice::fcc, 0.0, {}, periods);
+  // [/facets_of_a_lattice]
+  EXPECT_GT(closed.count(2), 0u);
+  EXPECT_EQ(tegl::check(closed).border, 0u);
+}
+
 }  // namespace

@@ -468,7 +468,7 @@ class ContourCommand final : public Command {
     }
     Tiling tiling = given_.extraction.tiling();
     given_.extraction.take_lattice(input.info, file(), tiling);
-    if (!tiling.lattice) remark(take_longitudes(input.image, given_.extraction, tiling));
+    remark(take_longitudes(input.image, given_.extraction, tiling));
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     for (FacetsResult& result : results)

@@ -111,8 +111,7 @@ void ContourArguments::require_tiling() const {
                 fmt::format("--unroll with {}; expected one of the two", facets ? "--facets" : "--stream"));
   for_plain_cells([&](const char* with) {
     if (is_streamed() && extraction.tiling().lattice) return;
-    if (with == std::string_view(kFacets) && extraction.tiling().lattice)
-      return extraction.refuse_periodic_with(kFacetsOnLattice);
+    if (with == std::string_view(kFacets) && extraction.tiling().lattice) return;
     is_streamed() || facets ? extraction.refuse_other_tiling(with) : extraction.refuse_tiling(with);
   });
   if (attributes.wanted() && extraction.tiling().of_cells) extraction.refuse_tiling("--attribute");
@@ -175,7 +174,6 @@ void ContourArguments::refuse_tiling_of_file(const ImageInfo& info, const std::s
     extraction.refuse_cells(info.samples_are_cells, file, with);
     if (!is_streamed() && with != std::string_view(kFacets)) extraction.refuse_lattice(info, file, with);
   });
-  if (facets && extraction.has_lattice(info)) extraction.refuse_periodic_with(kFacetsOnLattice);
   if (attributes.wanted()) extraction.refuse_cells(info.samples_are_cells, file, "--attribute");
   if (!positions.are_linear()) extraction.refuse_lattice(info, file, "--positions");
 }

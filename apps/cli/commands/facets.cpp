@@ -78,9 +78,13 @@ template <class Result, class T, int N, class Use>
 Result use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const ExtractOptions& options,
                   const Use& use) {
   const AxisPeriods<N> periods = periods_of(image.grid, work.periodic);
-  const std::uint64_t tiles = tiles_of(image.grid, periods);
-  if (work.single_precision) return use(extract_facets<float>(image.view(), work.isovalue, options, periods), tiles);
-  return use(extract_facets<double>(image.view(), work.isovalue, options, periods), tiles);
+  const auto extracted = [&]<class Real>(Real) -> Result {
+    if (!work.lattice)
+      return use(extract_facets<Real>(image.view(), work.isovalue, options, periods), tiles_of(image.grid, periods));
+    const auto facets = extract_facets<Real>(image.view(), *work.lattice, work.isovalue, options, periods);
+    return use(facets, facets.cells);
+  };
+  return work.single_precision ? extracted(float{}) : extracted(double{});
 }
 
 template <int N, class Real>
@@ -209,8 +213,7 @@ void require_output_holds_facets(const fs::path& output, int image_dim) {
 
 void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
                         WrittenFiles& written) {
-  FacetsWork with_progress = work;
-  ExtractOptions& options = with_progress.options;
+  ExtractOptions options = work.options;
   options.work.progress = bar.stage("facets");
   Stopwatch watch;
   const auto finish = [&](const auto& facets, std::uint64_t tiles) {
@@ -218,19 +221,11 @@ void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressB
     result.stats = stats_of(facets, tiles, result.seconds.generate);
     check_and_write(facets, work, bar, result, written);
   };
-  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
-    if (!work.lattice) return use_facets<void>(owned, work, options, finish);
-    const auto set_axes = [&](auto& facets) {
-      for (int a = 0; a < N; ++a) {
-        facets.axis_names[a] = owned.grid.axes[a].name;
-        facets.axis_units[a] = owned.grid.axes[a].unit;
-      }
-    };
-    const auto complex = lattice_complex(owned.view(), *work.lattice);
-    result.seconds.generate = watch.lap();
-    write_facets_of(complex, set_axes, with_progress, bar, result, written);
-  };
-  std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
+  std::visit(
+      [&](const auto& typed) {
+        std::visit([&](const auto& owned) { use_facets<void>(owned, work, options, finish); }, typed);
+      },
+      image);
 }
 
 std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputFiles& files, double read_seconds,

@@ -22,7 +22,6 @@
 namespace tegl::cli {
 
 inline constexpr const char* kFacets = "--facets";
-inline constexpr const char* kFacetsOnLattice = "--facets of samples on a lattice";
 
 /// Facets that were extracted and written.
 struct FacetsResult {
@@ -63,7 +62,7 @@ struct FacetsWork {
   Compression compression = Compression::none;
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
   bool allows_empty = false;               ///< of meshes
-  std::optional<Lattice> lattice = {};     ///< on which the samples of an image are; then without periodic axes
+  std::optional<Lattice> lattice = {};     ///< on which the samples of an image are
 };
 
 /// Extracts the facets of an image, checks them and writes them to result.output, one of `written`; fills the rest of

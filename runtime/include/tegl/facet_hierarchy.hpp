@@ -16,6 +16,7 @@
 #include "tegl/contour.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
+#include "tegl/lattice.hpp"
 #include "tegl/periodic.hpp"
 #include "tegl/work.hpp"
 
@@ -163,7 +164,7 @@ requires DimensionBetween<N, 2, 4>
 /// is ignored. The compact contour of `extract` subdivides the result: it has the same points, in the same order, and
 /// the same components and Euler characteristic. A complex of the cells of a grid has the facets of the image, in
 /// another order. (By rules that read the data, a 3D cell with a tunnel has triangles, with points and segments inside
-/// the cell.) Lattices: extract_facets(lattice_complex(image, lattice), isovalue).
+/// the cell.)
 ///
 /// Next to missing values 4D facets are separated as those of images.
 ///
@@ -188,6 +189,24 @@ template <Coordinate Real = float, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,
                                                      const ExtractOptions& options = {});
+
+/// Extracts the contour {value = isovalue} of an image on a lattice as facets: those of lattice_complex(image, lattice)
+/// by `extract_facets` of a complex, with the names and units of the image's axes, and normals by gradients on the
+/// lattice. `options` as for `extract_lattice`, except that `triangulation` is ignored. Points and normals are those of
+/// the compact contour of `extract_lattice` without points inside of polygons, and the components and the Euler
+/// characteristic are the same.
+///
+/// `periods`: of periodic axes, as in `extract_lattice`. Cells across the seam connect the last samples to the first
+/// ones, so a lattice whose axes are all periodic is a torus, and its facets are a closed complex
+/// (FacetHierarchy::periods). Its cells have the order of `lattice_complex`, with those across the seam at the samples
+/// where they begin: by type, then by sample, then for fcc_in_time by interval of time.
+///
+/// Errors: those of `extract_lattice` and of `extract_facets` of a complex. Time and memory: those of both.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, Lattice lattice, double isovalue,
+                                                     const ExtractOptions& options = {},
+                                                     const AxisPeriods<N>& periods = {});
 
 /// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus. For a polyhedron it
 /// is half the Euler characteristic of its boundary: each handle subtracts 1, each boundary component after the first

@@ -15,7 +15,7 @@
 #include "base/disjoint_sets.hpp"
 #include "complex/border_facets.hpp"
 #include "complex/contour_numbers.hpp"
-#include "complex/point_gradients.hpp"
+#include "facets/complex_facets.hpp"
 #include "facets/split_facets.hpp"
 #include "polytope/solid_facets.hpp"
 #include "tegl/error.hpp"
@@ -487,9 +487,9 @@ std::vector<bool> vertices_of(const Rings& rings, std::size_t count) {
 
 /// Facets of 2D and 3D contours.
 template <class Real, int N>
-FacetHierarchy<N, Real> facets_of_rings(const Complex<N>& complex, double isovalue, const ExtractOptions& options) {
+FacetHierarchy<N, Real> facets_of_rings(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
+                                        Surroundings<N> around) {
   std::vector<CellSimplices> cells, caps;
-  Surroundings<N> around;
   around.simplices = &cells;
   around.caps = &caps;
   const Contour<N, Real> contour = extract_in<Real, N>(complex, isovalue, options, around).contour;
@@ -514,10 +514,10 @@ FacetHierarchy<N, Real> facets_of_rings(const Complex<N>& complex, double isoval
 
 /// Facets of 4D contours.
 template <class Real>
-FacetHierarchy<4, Real> facets_in_4d(const Complex<4>& complex, double isovalue, const ExtractOptions& options) {
+FacetHierarchy<4, Real> facets_in_4d(const Complex<4>& complex, double isovalue, const ExtractOptions& options,
+                                     Surroundings<4> around) {
   std::vector<CellSimplices> cells, caps;
   VertexKeys keys;
-  Surroundings<4> around;
   around.simplices = &cells;
   around.caps = &caps;
   around.keys = &keys;  // so the contour is not separated beside missing values: here facets are
@@ -536,28 +536,37 @@ FacetHierarchy<4, Real> facets_in_4d(const Complex<4>& complex, double isovalue,
 
 }  // namespace
 
+template <class Real, int N>
+FacetHierarchy<N, Real> facets_in(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
+                                  const Surroundings<N>& around) {
+  ExtractOptions of_contour = options;
+  of_contour.triangulation = Triangulation::compact;
+  FacetHierarchy<N, Real> facets;
+  if constexpr (N == 4)
+    facets = facets_in_4d<Real>(complex, isovalue, of_contour, around);
+  else
+    facets = facets_of_rings<Real>(complex, isovalue, of_contour, around);
+  facets.direction = options.direction;
+  facets.cells = ComplexAccess::cells(complex).cell_count;
+  facets.periods = around.periods;
+  set_first_cells(facets.levels[1], facets.levels[0]);
+  if (N == 4 && std::any_of(complex.values().begin(), complex.values().end(), [](double v) { return std::isnan(v); }))
+    separate_facets(facets, [](const FacetPlace&) { return true; });
+  return facets;
+}
+
 }  // namespace detail
 
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4> FacetHierarchy<N, Real> extract_facets(const Complex<N>& complex, double isovalue,
                                                                           const ExtractOptions& options) {
-  ExtractOptions of_contour = options;
-  of_contour.triangulation = Triangulation::compact;
-  FacetHierarchy<N, Real> facets;
-  if constexpr (N == 4)
-    facets = detail::facets_in_4d<Real>(complex, isovalue, of_contour);
-  else
-    facets = detail::facets_of_rings<Real>(complex, isovalue, of_contour);
-  facets.direction = options.direction;
-  facets.cells = detail::ComplexAccess::cells(complex).cell_count;
-  detail::set_first_cells(facets.levels[1], facets.levels[0]);
-  if (N == 4 && std::any_of(complex.values().begin(), complex.values().end(), [](double v) { return std::isnan(v); }))
-    detail::separate_facets(facets, [](const FacetPlace&) { return true; });
-  return facets;
+  return detail::facets_in<Real, N>(complex, isovalue, options, {});
 }
 
-#define TEGL_INSTANTIATE_FACETS(N, Real) \
-  template FacetHierarchy<N, Real> extract_facets<Real, N>(const Complex<N>&, double, const ExtractOptions&);
+#define TEGL_INSTANTIATE_FACETS(N, Real)                                                                        \
+  template FacetHierarchy<N, Real> extract_facets<Real, N>(const Complex<N>&, double, const ExtractOptions&);   \
+  template FacetHierarchy<N, Real> detail::facets_in<Real, N>(const Complex<N>&, double, const ExtractOptions&, \
+                                                              const Surroundings<N>&);
 TEGL_INSTANTIATE_FACETS(2, float)
 TEGL_INSTANTIATE_FACETS(2, double)
 TEGL_INSTANTIATE_FACETS(3, float)

@@ -29,8 +29,7 @@
 #include "lattice/lattice_points.hpp"
 #include "lattice/lattice_rows.hpp"
 #include "lattice/lattice_simplices.hpp"
-#include "lattice/periodic_lattice.hpp"
-#include "periodic/periods.hpp"
+#include "lattice/stored_lattice.hpp"
 #include "tegl/error.hpp"
 #include "tegl/lattice.hpp"
 #include "tegl/normals.hpp"
@@ -293,33 +292,18 @@ bool extract_by_rows(SampleSource<N>& source, ReadSamples read, const Grid<N>& g
   return true;
 }
 
-template <int N>
-void check_lattice_options(double isovalue, ExtractOptions options) {
-  if (options.normals != Normals::none && options.normals != Normals::differences)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("normals on a lattice are {}; expected gradient (differences), geometric or flat",
-                            name_of(options.normals)));
-  options.normals = Normals::none;
-  check_complex_options(isovalue, options);
-}
-
 /// The contour of an image on a lattice. `places`: of samples, in place of those on the grid, without normals and
 /// modulo no periods; null: none.
 template <class Real, Value T, int N>
 Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,
                                        const ExtractOptions& options, const AxisPeriods<N>& periods,
                                        const std::vector<std::array<double, N>>* places) {
-  check_lattice_options<N>(isovalue, options);
-  check_dimension(lattice, N);
+  check_lattice_arguments<N>(image.grid(), lattice, isovalue, options, periods);
   const Grid<N>& grid = image.grid();
-  const unsigned periodic = periodic_axes<N>(periods);
-  if (periodic != 0) {
-    check_lattice_periods<N>(grid, lattice, periods);
-    check_periods<N>(grid, periods, options);
-  }
   Extraction<N, Real> result;
   if constexpr (N < 4)
-    if (periodic == 0 && !options.close && has_rows(lattice, options.ambiguity) && is_in_range<Real>(grid)) {
+    if (periodic_axes<N>(periods) == 0 && !options.close && has_rows(lattice, options.ambiguity) &&
+        is_in_range<Real>(grid)) {
       check_grid(grid, lattice, N - 1);
       (void)count_samples(grid, "a lattice");
       ImageSource<T, N> samples(image, isovalue, options.epsilon);
@@ -328,24 +312,10 @@ Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice
         return result;
       }
     }
-  if (periodic != 0) check_grid(grid, lattice, layer_axis(lattice));
-  const Complex<N> complex =
-      periodic == 0 ? lattice_complex(image, lattice) : periodic_lattice_complex(image, lattice, periods);
+  const StoredLattice<T, N> stored(image, lattice, isovalue, options, periods);
   if (places != nullptr)
-    return extract_with_stats<Real>(ComplexAccess::at_places<N>(complex, *places), isovalue, options);
-  Surroundings<N> around;
-  if (periodic != 0) around.periods = world_periods<N>(grid, periods);
-  const ImageSource<T, N> source(image, isovalue, options.epsilon);
-  std::optional<LatticeGradients<N>> gradients;
-  if (options.normals != Normals::none) {
-    gradients.emplace(source, grid, lattice, options.direction, periodic, around.periods);
-    around.gradient = [&, sizes = grid.sizes()](Index p) {
-      std::array<std::size_t, N> index;
-      for (int a = 0; a < N; p = static_cast<Index>(p / sizes[a]), ++a) index[a] = p % sizes[a];
-      return gradients->at(index);
-    };
-  }
-  result = extract_in<Real>(complex, isovalue, options, around);
+    return extract_with_stats<Real>(ComplexAccess::at_places<N>(stored.complex(), *places), isovalue, options);
+  result = extract_in<Real>(stored.complex(), isovalue, options, stored.surroundings());
   describe(grid, options, result.contour);
   return result;
 }
