@@ -236,5 +236,6 @@ void bind_files(py::module_& m);
 void bind_filter(py::module_& m);
 void bind_marching_cubes(py::module_& m);
 void bind_mesh(py::module_& m);
+void bind_facets(py::module_& m);
 
 }  // namespace tegl::python

@@ -14,6 +14,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "periods.hpp"
 #include "tegl/cells.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/division.hpp"
@@ -231,19 +232,6 @@ std::unique_ptr<AnyContour> extract_placed_any(const AnyImage& image, const std:
     add_shape_normals(*result, normals, options);
     return result;
   });
-}
-
-/// The periods of axes: those given, or else of longitudes and by the samples (NaN).
-template <int N>
-AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<int>& axes, const std::vector<double>& given) {
-  AxisPeriods<N> periods = sample_periods(grid, axes);
-  const AxisPeriods<N> longitudes = longitude_periods(grid);
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    const auto axis = static_cast<std::size_t>(axes[i]);
-    if (longitudes[axis] != 0.0) periods[axis] = longitudes[axis];
-    if (!std::isnan(given.at(i))) periods[axis] = given[i];
-  }
-  return periods;
 }
 
 template <class Real>

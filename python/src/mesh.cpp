@@ -11,6 +11,7 @@
 
 #include "binding.hpp"
 #include "docs.hpp"
+#include "facets.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/delaunay.hpp"
@@ -158,6 +159,26 @@ std::unique_ptr<AnyContour> extract_mesh(const Doubles& points, const CellArrays
   return call.run([&] { return contour_of(complex_of(points, mesh), nullptr, axis_names, wanted); });
 }
 
+std::unique_ptr<AnyFacets> extract_mesh_facets(const Doubles& points, const CellArrays& cells, const Doubles& values,
+                                               const Doubles& times, const std::vector<std::string>& axis_names,
+                                               double level, bool is_double, const py::dict& arguments,
+                                               const py::object& progress) {
+  Call call(progress);
+  const ExtractOptions options = extract_options(arguments, call);
+  const MeshArguments mesh = arguments_of(cells, values, times, axis_names);
+  const auto extracted = [&]<class Real, int N>(Real, const Complex<N>& complex) {
+    auto facets = extract_facets<Real>(complex, level, options);
+    for (std::size_t a = 0; a < std::min(axis_names.size(), facets.axis_names.size()); ++a)
+      facets.axis_names[a] = axis_names[a];
+    return std::make_unique<AnyFacets>(std::move(facets), level);
+  };
+  return call.run([&] {
+    return std::visit(
+        [&](const auto& complex) { return is_double ? extracted(double{}, complex) : extracted(float{}, complex); },
+        complex_of(points, mesh));
+  });
+}
+
 std::pair<std::uint64_t, std::uint64_t> count_mesh(const Doubles& points, const CellArrays& cells,
                                                    const Doubles& values, const Doubles& times, double level,
                                                    const py::dict& arguments, const py::object& progress) {
@@ -226,6 +247,9 @@ void bind_mesh(py::module_& m) {
   m.def("extract_mesh", &extract_mesh, py::arg("points"), py::arg("cells"), py::arg("values"), py::arg("times"),
         py::arg("axis_names"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("attributes"),
         py::arg("progress"), doc::extract);
+  m.def("extract_mesh_facets", &extract_mesh_facets, py::arg("points"), py::arg("cells"), py::arg("values"),
+        py::arg("times"), py::arg("axis_names"), py::arg("level"), py::arg("double"), py::arg("options"),
+        py::arg("progress"), doc::extract_facets_2);
   m.def("count_mesh", &count_mesh, py::arg("points"), py::arg("cells"), py::arg("values"), py::arg("times"),
         py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);
   py::class_<MeshIndex>(m, "MeshIndex", doc::CellIndex)

@@ -155,4 +155,5 @@ PYBIND11_MODULE(_tegl, m) {
   bind_filter(m);
   bind_marching_cubes(m);
   bind_mesh(m);
+  bind_facets(m);
 }

@@ -17,12 +17,14 @@ at the border of the array and at missing values. The contour of a 4D array can 
 from . import _tegl
 from ._contour import (Components, Contour, check, components, elements, intersections, load, measure, merge_vertices,
                        simplify, track)
+from ._facets import FacetLevel, FacetReport, Facets
 from ._fields import fields, sample
 from ._filter import filter, most_stable_scale, scale_space
-from ._image import ContourSize, Image, contour, count, read, slice
+from ._image import ContourSize, Image, contour, contour_facets, count, read, slice
 from ._incidence import Incidence
 from ._index import Index, PickReport
-from ._mesh import Mesh, MeshIndex, contour_mesh, contour_points, count_mesh, read_mesh
+from ._mesh import (Mesh, MeshIndex, contour_mesh, contour_mesh_facets, contour_points, count_mesh,
+                    read_mesh)
 from ._results import (Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MergeReport, MeshReport,
                        SimplifyStats)
 from ._skimage import marching_cubes
@@ -30,10 +32,10 @@ from ._tegl import Cancelled, __version__
 from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, TrackSegment
 
 __all__ = [
-    "Cancelled", "Component", "Components", "Contour", "ContourSize", "CutMeasures", "Elements", "ElementSum", "Image",
-    "Incidence", "Index", "Intersections", "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport",
+    "Cancelled", "Component", "Components", "Contour", "ContourSize", "CutMeasures", "Elements", "ElementSum", "FacetLevel",
+    "FacetReport", "Facets", "Image", "Incidence", "Index", "Intersections", "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport",
     "SimplifyStats", "Track", "TrackEvent", "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__",
-    "check", "components", "contour", "contour_mesh", "contour_points", "count", "count_mesh", "elements", "fields", "filter",
+    "check", "components", "contour", "contour_facets", "contour_mesh", "contour_mesh_facets", "contour_points", "count", "count_mesh", "elements", "fields", "filter",
     "intersections", "load", "marching_cubes", "measure", "merge_vertices", "most_stable_scale", "read", "read_mesh",
     "sample", "scale_space", "simplify", "slice", "track",
 ]

@@ -12,9 +12,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _kinds, _labels, _results, _outside, _tegl
+from . import _arguments, _facets, _kinds, _labels, _results, _outside, _tegl
 from ._arguments import Labelled, Place, Places, Progress
 from ._contour import Contour
+from ._facets import Facets
 from ._fields import LATTICES, lattice_spacing
 
 
@@ -128,17 +129,12 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         if level is not None:
             raise ValueError(f"level {level!r} with label {label!r}; expected one of the two")
         array, level = _labels.mask_of(array, label), 0.5
-    prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                                  axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True,
-                                  allow_lattice=True)
+    prepared = _prepared_on(lattice, array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
+                            axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
     if level is None and positions != "relaxed":
         raise TypeError("level is missing; expected a number, such as tegl.contour(array, 0.5)")
     if level is None:
         level = _labels.middle_of(prepared.image.array)
-    if lattice in LATTICES and spacing is None and coords is None and affine is None and isinstance(array, np.ndarray):
-        spacing = prepared.turned(lattice_spacing(lattice, prepared.ndim))
-        prepared = _arguments.prepare(array, spacing=spacing, origin=origin, mask=mask, axis_names=axis_names,
-                                      axis_units=axis_units, time_axis=time_axis)
     if curved is None:
         curved = _arguments.own_curved(array) or None
     lattice = _lattice_of(array, lattice)
@@ -192,6 +188,48 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     if curved is not None:
         return Contour._of(core, prepared.is_reversed)
     return Contour._of(core, prepared.is_reversed, prepared.extent, prepared.image.grid)
+
+
+def _prepared_on(lattice, array, *, allow_curved: bool, **grid: typing.Any) -> _arguments.Prepared:
+    """A prepared array; without coordinates, its layers have the step with which the lattice is regular."""
+    prepared = _arguments.prepare(array, allow_curved=allow_curved, allow_lattice=True, **grid)
+    if (lattice not in LATTICES or not isinstance(array, np.ndarray)
+            or any(grid[name] is not None for name in ("spacing", "coords", "affine"))):
+        return prepared
+    grid["spacing"] = prepared.turned(lattice_spacing(lattice, prepared.ndim))
+    return _arguments.prepare(array, **grid)
+
+
+@_arguments.documents("extract_facets", "FacetHierarchy", "extract_facets_3")
+def contour_facets(array, level: float, *, spacing=None, origin=None, coords=None, affine=None, mask=None,
+                   axis_names: Sequence[str] | None = None, axis_units: Sequence[str] | None = None,
+                   time_axis: int | None = None, ambiguity: _kinds.Ambiguity = "low",
+                   direction: _kinds.Direction = "descent", close: bool = False, epsilon: float = 0.0,
+                   normals: bool | _kinds.Normals | np.ndarray = False, dtype=np.float32, allow_empty: bool = False,
+                   threads: int = 0, progress: Progress | None = None, periodic=None,
+                   lattice: _kinds.Lattice | typing.Literal["cubic"] | None = None) -> Facets:
+    """The contour {value = level} of an array of 2 to 4 axes as facets: points, segments, polygons and polyhedra with their
+    incidences, as the grid cuts the contour.
+
+    Arguments are those of `tegl.contour`; normals are from the gradient. `tegl.contour` makes simplices of these facets:
+    both have the same points, components and Euler characteristic. Facets of meshes: `tegl.contour_mesh_facets`.
+    """
+    _facets.gradient_only(normals)
+    options = _arguments.extract_options(triangulation="compact", ambiguity=ambiguity, direction=direction, close=close,
+                                         epsilon=epsilon, normals=normals, gradient="differences", threads=threads)
+    prepared = _prepared_on(lattice, array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
+                            axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=False)
+    on = _lattice_of(array, lattice) or ""
+    is_double = _arguments.is_double(dtype, prepared)
+    level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+    options = prepared.library_options(options)
+    periodic = _arguments.periodic_or_none(periodic)
+    with prepared.terms():
+        axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
+        core = _tegl.extract_facets(prepared.image, on, axes, periods, level, is_double, options, progress)
+    if not allow_empty and not len(core.vertices):
+        _outside.require_level(prepared, level)
+    return Facets(core, prepared.is_reversed)
 
 
 class ContourSize(typing.NamedTuple):
@@ -425,6 +463,10 @@ class Image:
     def contour(self, level: float | None = None, **options: typing.Any) -> Contour:
         """The contour of this image: see `tegl.contour`."""
         return contour(self, level, **options)
+
+    def contour_facets(self, level: float, **options: typing.Any) -> Facets:
+        """The contour of this image as facets: see `tegl.contour_facets`."""
+        return contour_facets(self, level, **options)
 
     def to_xarray(self) -> typing.Any:
         """An xarray.DataArray with these names, coordinates, units and directions (CF's "positive"); the affine map is its

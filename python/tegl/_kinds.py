@@ -4,6 +4,7 @@
 import typing
 
 Triangulation = typing.Literal["compact", "barycentric"]
+PolygonTriangulation = typing.Literal["fan", "zigzag", "halving-chord", "halving-kink", "barycentric"]
 Ambiguity = typing.Literal["low", "high", "mean", "saddle", "squares", "decider"]
 Direction = typing.Literal["descent", "ascent"]
 #: Of vertices along the array's gradient, by differences, by a kernel or by context, or from the simplices around them;

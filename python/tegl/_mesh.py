@@ -10,9 +10,10 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _kinds, _tegl
+from . import _arguments, _facets, _kinds, _tegl
 from ._arguments import Progress
 from ._contour import Contour
+from ._facets import Facets
 from ._image import ContourSize
 
 #: name -> (VTK's number, corners): names of meshio and names of VTK. The order of corners is VTK's.
@@ -78,13 +79,33 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
                           epsilon=epsilon, normals=normals, threads=threads)
     arguments = _arguments_of(points, cells, values, times)
     others = _attributes_of(attributes, points, arguments[2].shape)
-    if level is None:
-        raise TypeError("level is missing; expected points, cells, values and level, or a mesh and level")
-    level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+    level, allow_empty = _level_of(level), _arguments.as_bool("allow_empty", allow_empty)
     core = _tegl.extract_mesh(*arguments, level, _is_double(dtype), options, others, progress)
     if not allow_empty and not len(core.simplices):
         _require_level(arguments[2], level)
     return Contour._of(core, False)
+
+
+@_arguments.documents("extract_facets_2", "FacetHierarchy")
+def contour_mesh_facets(points, cells=None, values=None, level: float | None = None, *, times=None,
+                        ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
+                        epsilon: float = 0.0, normals: bool | typing.Literal["gradient"] = False, dtype=np.float32,
+                        allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Facets:
+    """The contour {value = level} of a mesh as facets: segments in cells of two dimensions, polygons in those of three,
+    polyhedra in those of four, among them the prisms over the cells of a mesh over time.
+
+    Arguments are those of `tegl.contour_mesh`. `facets[k].cells` has the cell of each facet. Cells are numbered by type, in
+    the order of the library's reference below, and within a type in the order of the input.
+    """
+    _facets.gradient_only(normals)
+    options = _options_of(triangulation="compact", ambiguity=ambiguity, direction=direction, close=close, epsilon=epsilon,
+                          normals=normals, threads=threads)
+    arguments = _arguments_of(points, cells, values, times)
+    level, allow_empty = _level_of(level), _arguments.as_bool("allow_empty", allow_empty)
+    core = _tegl.extract_mesh_facets(*arguments, level, _is_double(dtype), options, progress)
+    if not allow_empty and not len(core.vertices):
+        _require_level(arguments[2], level)
+    return Facets(core, False)
 
 
 def count_mesh(points, cells=None, values=None, level: float | None = None, *, times=None,
@@ -97,9 +118,7 @@ def count_mesh(points, cells=None, values=None, level: float | None = None, *, t
     options = _options_of(triangulation=triangulation, ambiguity=ambiguity, direction="descent", close=close, epsilon=0.0,
                           threads=threads)
     arguments = _arguments_of(points, cells, values, times)[:-1]
-    if level is None:
-        raise TypeError("level is missing; expected points, cells, values and level, or a mesh and level")
-    return ContourSize(*_tegl.count_mesh(*arguments, _arguments.as_number("level", level), options, progress))
+    return ContourSize(*_tegl.count_mesh(*arguments, _level_of(level), options, progress))
 
 
 class MeshIndex:
@@ -143,6 +162,12 @@ class MeshIndex:
         if not allow_empty and not len(core.simplices):
             _require_level(self._range, level)
         return Contour._of(core, False)
+
+
+def _level_of(level: float | None) -> float:
+    if level is None:
+        raise TypeError("level is missing; expected points, cells, values and level, or a mesh and level")
+    return _arguments.as_number("level", level)
 
 
 def _attributes_of(attributes, mesh, shape: tuple[int, ...]) -> list[tuple[str, np.ndarray]]:
@@ -234,6 +259,10 @@ class Mesh:
     def contour(self, level: float, **options: typing.Any) -> Contour:
         """The contour of this mesh: see `tegl.contour_mesh`."""
         return contour_mesh(self, level=level, **options)
+
+    def contour_facets(self, level: float, **options: typing.Any) -> Facets:
+        """The contour of this mesh as facets: see `tegl.contour_mesh_facets`."""
+        return contour_mesh_facets(self, level=level, **options)
 
     def count(self, level: float, **options: typing.Any) -> ContourSize:
         """The size of the contour, without making it: see `tegl.count_mesh`."""

@@ -87,6 +87,7 @@ def test_the_names_of_options_are_the_librarys():
     calls = {"Triangulation": lambda: tegl.contour(volume, 0.0, triangulation="?"),
              "Ambiguity": lambda: tegl.contour(volume, 0.0, ambiguity="?"),
              "Lattice": lambda: tegl.sample("ball", 8, lattice="?"),
+             "PolygonTriangulation": lambda: tegl.contour_facets(volume, 0.0).triangulate("?"),
              "Division": lambda: tegl.contour(volume, 0.0, division="?"),
              "Direction": lambda: tegl.contour(volume, 0.0, direction="?"),
              "FilterBorder": lambda: tegl.filter(volume, median=1, border="?"),

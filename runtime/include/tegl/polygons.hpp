@@ -86,12 +86,12 @@ requires DimensionBetween < detail::kPointDim<Points>,
   return polygon_barycentre<kDim>(std::span<const std::array<double, kDim>>(points));
 }
 
-/// Triangulates the polygons of a 3D contour. The result is a manifold with every method: chords between two points of
-/// one square of the grid are forbidden, as the cube on the other side might use them too.
+/// Triangulates the polygons of a 3D contour of an image. The result is a manifold with every method: chords between
+/// two points of one square of the grid are forbidden, as the cube on the other side might use them too.
 ///
 /// The points of `facets` keep their numbers. Barycentres come last, with the mean of their polygon's normals if there
 /// are normals. Triangles come polygon by polygon. Errors: TooLarge, Cancelled, UnsupportedData for facets with
-/// periods. O(size).
+/// periods and for those of a complex. O(size).
 template <Coordinate Real>
 [[nodiscard]] Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
                                            const WorkOptions& work = {});

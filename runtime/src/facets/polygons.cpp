@@ -318,6 +318,10 @@ template <Coordinate Real>
 Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTriangulation method,
                              const WorkOptions& work) {
   constexpr std::size_t kRun = 1024;
+  if (facets.cells != 0)
+    throw Error(
+        ErrorCode::UnsupportedData,
+        "polygons in the cells of a mesh or lattice, whose common faces are not known; expected those of an image");
   if (!facets.periods.empty())
     throw Error(ErrorCode::UnsupportedData,
                 "facets with periodic axes, whose polygons cross the seam; expected facets without periods");
