@@ -193,10 +193,21 @@ def periodic_axes(periodic: object, prepared: Prepared,
     else:
         raise TypeError(f"periodic is {periodic!r}; expected an axis, a list of axes, 'all', 'auto', 'none', or a "
                         "dict of axes and periods")
-    axes = [prepared.library_axis(axis) for axis, _ in given]
+    axes = [_periodic_axis(axis, prepared, curved) for axis, _ in given]
     if not axes or len(set(axes)) != len(axes):
         raise ValueError(f"periodic is {periodic!r}; expected at least one axis, each once")
     return axes, [period for _, period in given]
+
+
+def _periodic_axis(axis: int | str, prepared: Prepared,
+                   curved: Sequence[tuple[int, int, np.ndarray, str, str]]) -> int:
+    """The library's axis of a name or number; "lon" and "longitude" also are the axis along which longitudes, by their unit,
+    run around the globe."""
+    if axis in ("lon", "longitude") and axis not in prepared.names and prepared.ndim <= 4:
+        found = _tegl.longitude_axes(prepared.image, curved)
+        if len(found) == 1:
+            return found[0]
+    return prepared.library_axis(axis)
 
 
 def curved_axes(curved: object, prepared: Prepared) -> list[tuple[int, int, np.ndarray, str, str]]:

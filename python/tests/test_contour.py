@@ -346,6 +346,9 @@ def test_longitudes_that_span_360_degrees_are_found():
     found = tegl.contour(spot, 0.0, periodic="auto", **names, **units)
     assert found.check().is_closed and found.check().components == 1
     assert np.array_equal(found.vertices, tegl.contour(spot, 0.0, periodic="lon", **names, **units).vertices)
+    assert np.array_equal(found.vertices, tegl.contour(spot, 0.0, periodic="longitude", **names, **units).vertices)
+    with pytest.raises(ValueError, match="no axis is named 'longitude'; expected one of"):
+        tegl.contour(spot, 0.0, periodic="longitude", **names)
     assert tegl.count(spot, 0.0, periodic="auto", **names, **units) == (len(found.vertices), len(found.simplices))
     plain = tegl.contour(spot, 0.0, periodic="auto", **names)
     assert plain.check().components == 2 and np.array_equal(plain.vertices, tegl.contour(spot, 0.0, **names).vertices)

@@ -25,31 +25,32 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A netCDF file of a global grid with two-dimensional longitudes and latitudes.
-void write_curved_globe(const std::string& path) {
+/// A netCDF file of a global grid with two-dimensional longitudes and latitudes. `is_turned`: its first dimension runs
+/// around the globe.
+void write_curved_globe(const std::string& path, const char* longitudes = "lon", bool is_turned = false) {
   constexpr std::size_t kLon = 36, kLat = 17;
   std::vector<double> lon, lat, values;
-  for (std::size_t j = 0; j < kLat; ++j)
-    for (std::size_t i = 0; i < kLon; ++i) {
-      const auto along = static_cast<double>(i), up = static_cast<double>(j);
-      lon.push_back(-175.0 + 10.0 * along + 0.1 * up);
-      lat.push_back(-80.0 + 10.0 * up + std::sin(along / 36.0 * 2.0 * std::numbers::pi));
-      const double away = lon.back() - 180.0 - 360.0 * std::round((lon.back() - 180.0) / 360.0);
-      values.push_back(40.0 - std::hypot(away, lat.back()));
-    }
+  for (std::size_t s = 0; s < kLon * kLat; ++s) {
+    const auto along = static_cast<double>(is_turned ? s / kLat : s % kLon);
+    const auto up = static_cast<double>(is_turned ? s % kLat : s / kLon);
+    lon.push_back(-175.0 + 10.0 * along + 0.1 * up);
+    lat.push_back(-80.0 + 10.0 * up + std::sin(along / 36.0 * 2.0 * std::numbers::pi));
+    const double away = lon.back() - 180.0 - 360.0 * std::round((lon.back() - 180.0) / 360.0);
+    values.push_back(40.0 - std::hypot(away, lat.back()));
+  }
   int file = 0, variable = 0;
   std::array<int, 2> dimensions{};
   const auto check = [](int status) { ASSERT_EQ(status, NC_NOERR) << nc_strerror(status); };
   check(nc_create(path.c_str(), NC_CLOBBER, &file));
-  check(nc_def_dim(file, "j", kLat, &dimensions[0]));
-  check(nc_def_dim(file, "i", kLon, &dimensions[1]));
+  check(nc_def_dim(file, "j", kLat, &dimensions[is_turned ? 1 : 0]));
+  check(nc_def_dim(file, "i", kLon, &dimensions[is_turned ? 0 : 1]));
   const auto define = [&](const char* name, const char* attribute, const std::string& text) {
     check(nc_def_var(file, name, NC_DOUBLE, 2, dimensions.data(), &variable));
     check(nc_put_att_text(file, variable, attribute, text.size(), text.c_str()));
     return variable;
   };
-  const int of_lon = define("lon", "units", "degrees_east"), of_lat = define("lat", "units", "degrees_north");
-  const int of_values = define("spot", "coordinates", "lon lat");
+  const int of_lon = define(longitudes, "units", "degrees_east"), of_lat = define("lat", "units", "degrees_north");
+  const int of_values = define("spot", "coordinates", std::string(longitudes) + " lat");
   check(nc_enddef(file));
   check(nc_put_var_double(file, of_lon, lon.data()));
   check(nc_put_var_double(file, of_lat, lat.data()));
@@ -558,9 +559,67 @@ TEST_F(PeriodicCommand, CurvedGridsMayBePeriodic) {
   const nlohmann::json by_index =
       run_json({"contour", file, "--iso", "0", "--index-grid", "--periodic", "i", "-o", output});
   EXPECT_EQ(by_index["components"], 1);
-  expect_refused_of(file, {"--periodic", "depth", "-o", output}, "expected one of i or lon, j or lat");
+  expect_refused_of(file, {"--periodic", "depth", "-o", output},
+                    "expected one of i or lon, j or lat, or x, y for them in this order, or longitude, or all");
   expect_refused_of(file, {"--periodic", "lon", "--attribute", file, "-o", output}, "--periodic and a curved grid");
   expect_refused_of(file, {"--periodic", "lon", "--lattice", "triangular", "-o", output}, "--lattice triangular with");
+}
+
+TEST_F(PeriodicCommand, CurvedLongitudesAreNamedByDimensionCoordinateLetterOrUnit) {
+  const std::string file = path("globe.nc"), turned = path("turned.nc"), output = path("spot.vtkhdf");
+  write_curved_globe(file, "TLONG");
+  write_curved_globe(turned, "TLONG", true);
+  const auto expect_around = [&](const std::string& from, const std::string& axis) {
+    const nlohmann::json report = run_json({"contour", from, "--iso", "0", "--periodic", axis, "-o", output});
+    EXPECT_EQ(report["components"], 1) << from << " " << axis;
+    EXPECT_EQ(report["boundary_simplices"], 0) << from << " " << axis;
+  };
+  for (const char* const axis : {"TLONG", "tlong", "i", "x", "lon", "Longitude", "longitude=360", "auto"})
+    expect_around(file, axis);
+  // the first dimension is the axis y of the program
+  for (const char* const axis : {"TLONG", "i", "y", "lon", "longitude", "auto"}) expect_around(turned, axis);
+  expect_refused_of(turned, {"--periodic", "nav_lon", "-o", output},
+                    "--periodic nav_lon names no axis; expected one of ");
+  expect_refused_of(turned, {"--periodic", "nav_lon", "-o", output}, "TLONG");
+  expect_refused_of(file, {"--periodic", "TLONG,lon", "-o", output}, "--periodic names the axis lon twice");
+  // with the grid of the indices, there are no longitudes
+  const std::string refused =
+      "--periodic lon names no axis; expected one of i, j, or x, y for them in this order, or all";
+  expect_refused_of(file, {"--periodic", "lon", "--index-grid", "-o", output}, refused);
+}
+
+TEST_F(PeriodicCommand, AxesOfFilesAreNamedByDimensionLetterOrUnit) {
+  const auto write_globe = [&](const std::string& name, const std::string& unit) {
+    OwnedImage<float, 2> image;
+    image.grid = Grid<2>::unit({36, 17});
+    image.grid.axes[0] = Axis::uniform(36, -175.0, 10.0);
+    image.grid.axes[1] = Axis::uniform(17, -80.0, 10.0);
+    image.grid.axes[0].name = name;
+    image.grid.axes[0].unit = unit;
+    image.grid.axes[1].name = "yt_ocean";
+    for (std::size_t j = 0; j < 17; ++j)
+      for (std::size_t i = 0; i < 36; ++i)
+        image.values.push_back(
+            static_cast<float>(40.0 - std::hypot(180.0 - std::abs(image.grid.axes[0][i]), image.grid.axes[1][j])));
+    write_image(image.view(), path("globe.nc"));
+    return path("globe.nc");
+  };
+  const auto components = [&](const std::string& file, const std::string& axis) {
+    return run_json({"components", file, "--iso", "0", "--periodic", axis})["count"].get<int>();
+  };
+  const std::string output = path("spot.vtkhdf");
+  const std::string globe = write_globe("xt_ocean", "degrees_E");
+  for (const char* const axis : {"xt_ocean", "XT_Ocean", "x", "lon", "longitude", "lon=360", "x=360"})
+    EXPECT_EQ(components(globe, axis), 1) << axis;
+  expect_refused_of(globe, {"--periodic", "nav_lon", "-o", output},
+                    "--periodic nav_lon names no axis; expected one of xt_ocean, yt_ocean, or x, y for them in this "
+                    "order, or longitude, or all, auto or none");
+  expect_refused_of(globe, {"--periodic", "z", "-o", output}, "--periodic z names no axis");
+  // a name counts more than a letter, and lon is no name without a unit of longitudes
+  const std::string crossed = write_globe("y", "");
+  EXPECT_EQ(components(crossed, "y"), 1);
+  EXPECT_EQ(components(crossed, "x"), 1);
+  expect_refused_of(crossed, {"--periodic", "lon", "-o", output}, "--periodic lon names no axis; expected one of y, ");
 }
 
 TEST_F(PeriodicCommand, LongitudesAreFoundByTheirUnitAndSpan) {

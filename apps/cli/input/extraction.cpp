@@ -89,9 +89,10 @@ void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> wi
   app_ = &app;
   without_periods_ = std::move(without_periods);
   options_.push_back(app.add_option("--periodic", periodic_,
-                                    "axes that are periodic, by name, as in lon or x,y,z; or all; the period is the "
-                                    "number of samples x the step, or as in lon=360; auto: longitudes that span 360 "
-                                    "degrees; none: no axis, and no remark on such longitudes")
+                                    "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
+                                    "longitude, by its unit; or all; the period is the number of samples x the step, "
+                                    "or as in lon=360; auto: longitudes that span 360 degrees; none: no axis, and no "
+                                    "remark on such longitudes")
                          ->delimiter(',')
                          ->allow_extra_args(false)
                          ->type_name("AXES"));
@@ -362,18 +363,61 @@ struct NamedPeriod {
   std::optional<double> period;
 };
 
-/// The axes that --periodic names. `labels`: the names of each axis.
-std::vector<NamedPeriod> named_periods(const std::vector<std::vector<std::string>>& labels,
-                                       const std::vector<std::string>& names) {
+/// Whether a unit is one of longitudes, as in `longitude_periods`.
+bool is_longitude_unit(const std::string& unit) {
+  Grid<2> around = Grid<2>::unit({4, 2});
+  around.axes[0] = Axis::uniform(4, 0.0, 90.0);
+  around.axes[0].unit = unit;
+  return longitude_periods(around)[0] != 0.0;
+}
+
+/// An axis as --periodic may name it.
+struct AxisNames {
+  std::vector<std::string> names;  ///< its own, or its letter, and that of its curved coordinate
+  bool is_longitude = false;       ///< has longitudes, by their unit
+};
+
+/// The axis of this name, or else, if only one axis has longitudes, that one for lon and longitude, or else the axis of
+/// the letter x, y, z or t; axes.size() if there is none.
+std::size_t axis_named(const std::string& name, const std::vector<AxisNames>& axes) {
+  const auto is_name = [&](const std::string& one) { return equal_ignoring_case(one, name); };
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if (std::any_of(axes[a].names.begin(), axes[a].names.end(), is_name)) return a;
+  const auto has_longitudes = [](const AxisNames& axis) { return axis.is_longitude; };
+  if ((is_name("lon") || is_name("longitude")) && std::count_if(axes.begin(), axes.end(), has_longitudes) == 1)
+    return static_cast<std::size_t>(std::find_if(axes.begin(), axes.end(), has_longitudes) - axes.begin());
+  std::size_t a = 0;
+  while (a < axes.size() && !is_name(axis_label("", a))) ++a;
+  return a;
+}
+
+[[noreturn]] void fail_to_name(const std::string& name, const std::vector<AxisNames>& axes) {
+  std::vector<std::string> all, letters;
+  bool has_names = false, has_longitudes = false;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    all.push_back(fmt::format("{}", fmt::join(axes[a].names, " or ")));
+    letters.push_back(axis_label("", a));
+    has_names = has_names || all.back() != letters.back();
+    has_longitudes = has_longitudes || axes[a].is_longitude;
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("--periodic {} names no axis; expected one of {}{}{}, or all, auto or none", name,
+                          fmt::join(all, ", "),
+                          has_names ? fmt::format(", or {} for them in this order", fmt::join(letters, ", ")) : "",
+                          has_longitudes ? ", or longitude" : ""));
+}
+
+/// The axes that --periodic names.
+std::vector<NamedPeriod> named_periods(const std::vector<AxisNames>& axes, const std::vector<std::string>& names) {
   std::vector<NamedPeriod> found;
   for (const std::string& name : names) {
     const std::size_t equal = name.find('=');
-    const auto is_named = [&](const std::string& label) { return equal_ignoring_case(label, name.substr(0, equal)); };
-    bool is_known = name == "all";
-    for (std::size_t a = 0; a < labels.size(); ++a) {
+    const std::string own = name.substr(0, equal);
+    const std::size_t named = axis_named(own, axes);
+    const bool is_all = named == axes.size() && name == "all";
+    if (named == axes.size() && !is_all) fail_to_name(name, axes);
+    for (std::size_t a = is_all ? 0 : named; a < (is_all ? axes.size() : named + 1); ++a) {
       const auto axis = static_cast<int>(a);
-      if (name != "all" && std::none_of(labels[a].begin(), labels[a].end(), is_named)) continue;
-      is_known = true;
       if (std::any_of(found.begin(), found.end(), [&](const NamedPeriod& other) { return other.axis == axis; }))
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("--periodic names the axis {} twice; expected it once", name));
@@ -382,25 +426,35 @@ std::vector<NamedPeriod> named_periods(const std::vector<std::vector<std::string
       if (one.period == 0.0)
         throw Error(ErrorCode::InvalidArgument, fmt::format("--periodic {}; expected a positive period", name));
     }
-    if (is_known) continue;
-    std::vector<std::string> all;
-    for (const auto& of_axis : labels) all.push_back(fmt::format("{}", fmt::join(of_axis, " or ")));
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--periodic {} names no axis; expected one of {}, or all, auto or none", name,
-                            fmt::join(all, ", ")));
   }
   return found;
+}
+
+template <int N>
+std::vector<AxisNames> names_of_axes(const Grid<N>& grid) {
+  std::vector<AxisNames> axes(N);
+  for (std::size_t a = 0; a < N; ++a)
+    axes[a] = {{axis_label(grid.axes[a].name, a)}, is_longitude_unit(grid.axes[a].unit)};
+  return axes;
+}
+
+/// The axis that the name of a curved coordinate stands for: of longitudes the one along which they run around the
+/// globe, which in a file with the other order of dimensions is not the coordinate's own.
+template <int N>
+int named_by(const Grid<N>& grid, const CurvedAxis& one) {
+  if (!is_longitude_unit(one.unit)) return one.axis;
+  std::vector<int> around = longitude_axes<N>(grid, std::span(&one, 1));
+  std::erase_if(around, [&](int a) { return (one.along >> a & 1u) == 0; });
+  return around.size() == 1 ? around.front() : one.axis;
 }
 
 }  // namespace
 
 template <int N>
 AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names) {
-  std::vector<std::vector<std::string>> labels;
-  for (std::size_t a = 0; a < N; ++a) labels.push_back({axis_label(grid.axes[a].name, a)});
   AxisPeriods<N> periods{};
   const AxisPeriods<N> longitudes = longitude_periods(grid);
-  for (const NamedPeriod& one : named_periods(labels, names)) {
+  for (const NamedPeriod& one : named_periods(names_of_axes(grid), names)) {
     const auto axis = static_cast<std::size_t>(one.axis);
     periods[axis] = one.period                ? *one.period
                     : longitudes[axis] != 0.0 ? longitudes[axis]
@@ -412,14 +466,16 @@ AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& n
 template <int N>
 std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
                                     const std::vector<std::string>& names) {
-  std::vector<std::vector<std::string>> labels;
-  for (std::size_t a = 0; a < N; ++a) labels.push_back({axis_label(grid.axes[a].name, a)});
-  for (const CurvedAxis& one : curved)
-    if (auto& of_axis = labels[static_cast<std::size_t>(one.axis)]; !one.name.empty() && one.name != of_axis.front())
-      of_axis.push_back(one.name);
+  if (names.empty()) return {};
+  std::vector<AxisNames> named_axes = names_of_axes(grid);
+  for (const CurvedAxis& one : curved) {
+    AxisNames& axis = named_axes[static_cast<std::size_t>(named_by(grid, one))];
+    axis.is_longitude = axis.is_longitude || is_longitude_unit(one.unit);
+    if (!one.name.empty() && one.name != axis.names.front()) axis.names.push_back(one.name);
+  }
   std::vector<int> axes;
   std::vector<double> periods;
-  for (const NamedPeriod& named : named_periods(labels, names)) {
+  for (const NamedPeriod& named : named_periods(named_axes, names)) {
     if (named.period && !(*named.period > 0.0))
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("--periodic with the period {}; expected a positive one", *named.period));

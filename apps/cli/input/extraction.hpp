@@ -185,11 +185,12 @@ std::string remark_without_contour(const Image& image, double isovalue) {
 /// numbers.
 std::string reason_of_zero_size(const AnyImage& image, double of_samples, double epsilon);
 
-/// The periods that --periodic names: axes by name, `all`, or NAME=PERIOD, but not auto or none. Throws InvalidArgument
-/// for other names.
+/// The periods that --periodic names: axes by name, letter or `longitude`, `all`, or NAME=PERIOD, but not auto or none.
+/// Throws InvalidArgument, with all names, for others.
 template <int N>
 AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names);
 /// The seams that --periodic names on a curved grid: axes by their names or those of their coordinates, as periods_of.
+/// The name of longitudes stands for the axis along which they run around the globe.
 template <int N>
 std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
                                     const std::vector<std::string>& names);
