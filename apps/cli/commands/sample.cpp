@@ -151,6 +151,8 @@ class SampleCommand final : public Command {
     const double first = parse_finite("--range", ends[0]), last = parse_finite("--range", ends[1]);
     if (!(first < last))
       throw Error(ErrorCode::InvalidArgument, fmt::format("--range is '{}'; expected FIRST less than LAST", range_));
+    if (!std::isfinite(last - first))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--range is '{}'; expected ends of finite distance", range_));
     std::vector<double> sizes;
     for (const std::string_view part : split(size_, ',')) {
       sizes.push_back(parse_finite("--size", part));
@@ -187,7 +189,7 @@ class SampleCommand final : public Command {
       info.lattice = lattice;
       stream_image_result(layers, info, bar, result);
     } catch (const std::bad_alloc&) {
-      throw Error(ErrorCode::TooLarge, fmt::format("out of memory for a layer of {} samples; expected a smaller --size",
+      throw Error(ErrorCode::TooLarge, fmt::format("out of memory for a layer of an image of {} samples; expected a smaller --size",
                                                    fmt::join(grid.sizes(), " x ")));
     }
   }
