@@ -221,7 +221,8 @@ TEST_F(Errors, AFileThatGrowsBeyondItsLimitExitsWith6InEveryFormat) {
   for (const std::string& name : {path("out.nc"), path("out.nrrd"), path("out.vti")}) {
     const rlimit small{300, before.rlim_max};
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-    expect_failure(6, {"filter", ball_file(), "--gaussian", "1", "-o", name}, {name + ": cannot be written (File too large)"});
+    expect_failure(6, {"filter", ball_file(), "--gaussian", "1", "-o", name},
+                   {name + ": cannot be written (File too large)"});
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
   }
 }

@@ -189,8 +189,9 @@ class SampleCommand final : public Command {
       info.lattice = lattice;
       stream_image_result(layers, info, bar, result);
     } catch (const std::bad_alloc&) {
-      throw Error(ErrorCode::TooLarge, fmt::format("out of memory for a layer of an image of {} samples; expected a smaller --size",
-                                                   fmt::join(grid.sizes(), " x ")));
+      throw Error(ErrorCode::TooLarge,
+                  fmt::format("out of memory for a layer of an image of {} samples; expected a smaller --size",
+                              fmt::join(grid.sizes(), " x ")));
     }
   }
 
