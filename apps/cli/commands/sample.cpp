@@ -56,7 +56,7 @@ class SampleCommand final : public Command {
     app().add_option("FIELD", field_, "name of a field, or an expression")->required();
     app().add_option("-o,--output", output_, std::string("the samples: ") + kImageFiles)->type_name("FILE")->required();
     dim_option_ = app()
-                      .add_option("--dim", dim_, "number of axes, 2 to 5; default: that of --lattice, else 3")
+                      .add_option("--dim", dim_, "number of axes, 2 to 5; default: as --lattice needs, else 3")
                       ->check(whole_number(2, 5))
                       ->type_name("COUNT");
     app()
