@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a measurement was made on: processor, caches, memory, compiler, versions of the peers. Names nothing that tells
+"""The machine of a measurement: processor, caches, memory, compiler, versions of the peers. Names nothing that tells
 one machine of a kind from another, and no path."""
 
 import json

@@ -214,7 +214,7 @@ void add_simplification(Subject<T>& subject, std::vector<Operation>& list) {
     SimplifyOptions<4> options;
     options.method = method;
     options.ratio = 0.2;
-    options.measure = measure;  // the row of `deviation` measures the bound alone
+    options.measure = measure;  // the row of `deviation` measures only the bound
     options.work = subject.work_options();
     options.scale = automatic_scale(subject.contour);
     subject.simplified = simplify(subject.contour, options).contour;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Positions by rules: distance of planes and volume of balls from binary samples, self-intersections, time and memory.
-// The tables are those of docs/positions.md.
+// Makes the tables of docs/positions.md.
 #include "tegl/positions.hpp"
 
 #include <cmath>

@@ -176,13 +176,13 @@ def measure(core: Core, case: Case, options) -> dict:
 
 
 def set_floor(row: dict, threads: int, rates: dict) -> None:
-    """The time that memory alone takes: each sample read once, each byte of the output written once."""
+    """The time of memory accesses only: each sample read once, each byte of the output written once."""
     if own := row["sides"].get(f"tegl/{threads}"):
         own["floor"] = row["input_bytes"] / rates["read"] + own["output_bytes"] / rates["fresh_write"]
 
 
 def verdicts(case: Case, row: dict) -> list[dict]:
-    """What was to be reached, and what was."""
+    """The targets, and the results."""
     found = []
     sides = row["sides"]
     for threads, wanted in case.ratio.items():

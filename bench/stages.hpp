@@ -2,7 +2,7 @@
 //
 // Benchmark of one extraction, and its report by stages.
 //
-// The time is that of the whole extraction. Counters, as means over the iterations: milliseconds of each stage; samples
+// Times the whole extraction. Counters, as means over the iterations: milliseconds of each stage; samples
 // per second and input bytes per second of the whole, and input bytes per second of classification; active tiles per
 // second of the whole, and tiles per second of finding them; simplices and output bytes per second of the whole, and
 // output bytes per second of generation.

@@ -67,7 +67,7 @@ def side_rows(row: dict) -> list[str]:
 
 
 def side_by_side(result: dict) -> list[str]:
-    """All figures, then what was to be reached."""
+    """All figures, then the targets."""
     text = ["| field | simplices | side, threads | median ms | minimum ms | relative to tegl | stages: classify, find, generate | memory floor, "
             "ms | page faults | memory beside input and output, share of the input |", "|---|---|---|---|---|---|---|---|---|---|"]
     for row in result["rows"]:

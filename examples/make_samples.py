@@ -6,7 +6,7 @@
 
     head.nii.gz                a head as computed tomography would have it, in Hounsfield units, on a grid of 3.2 mm:
                                skin, skull, brain, and a tumour of 12 mm radius. NIfTI-1.
-    drops_40x24x24x21_float.raw  two drops that meet and merge, and one that comes off: values alone, as simulations
+    drops_40x24x24x21_float.raw  two drops that meet and merge, and one that comes off: only values, as simulations
                                dump them, x fastest, time last
     fireball.nc                the energy density of an expanding fireball over tau, eta, y and x, and its transverse
                                velocity. netCDF.

@@ -6,7 +6,7 @@
 
 scripts/docs installs what this needs and runs it. The steps: Doxygen makes HTML of the pages and the headers; files of
 the project that pages link to are put beside it, pictures as they are and sources as pages of text; links to them are
-resolved; then every link, anchor and picture of the result is looked at.
+resolved; then every link, anchor and picture of the result is checked.
 """
 
 import html
@@ -166,7 +166,7 @@ class Links(html.parser.HTMLParser):
 
 
 def dead_links(output: pathlib.Path) -> tuple[list[str], int]:
-    """Links, anchors and pictures of the HTML in a folder that lead nowhere, and how many were looked at."""
+    """Links, anchors and pictures of the HTML in a folder that lead nowhere, and the number of all."""
     found = {page.resolve(): Links(page) for page in sorted(output.rglob("*.html"))}
     dead, count = [], 0
     for page, links in found.items():

@@ -100,7 +100,7 @@ def is_external(target: str) -> bool:
 
 
 def dead_link(source: pathlib.Path, page: pathlib.Path, target: str) -> str | None:
-    """What is wrong with a link of a page, or None. Links to other sites are not looked at."""
+    """What is wrong with a link of a page, or None. Links to other sites are not checked."""
     if is_external(target):
         return None
     path, _, anchor = target.partition("#")

@@ -34,7 +34,7 @@ def public_names(package: pathlib.Path) -> list[tuple[str, ast.AST]]:
 
 
 def is_overload(node: ast.AST) -> bool:
-    """What type checkers alone read, before the definition itself."""
+    """Whether a definition is an overload, which only type checkers read."""
     return any(ast.unparse(decorator).endswith("overload") for decorator in getattr(node, "decorator_list", []))
 
 

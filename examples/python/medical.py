@@ -5,7 +5,7 @@
     examples/python/medical.py [FILE.nii.gz [OUTPUT_FOLDER]]
 
 Without a file, the head that examples/make_samples.py makes: skin, skull, brain, and a tumour of 12 mm radius. The cells
-(# %%) are those of a notebook.
+(# %%) are as in a notebook.
 """
 
 # %% The file: an array with its coordinates, in mm

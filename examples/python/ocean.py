@@ -35,7 +35,7 @@ print(f"t = 7.3: {july}, {july.check().components} components")
 july.save(output / "july.ply")
 assert july.check().is_manifold
 
-# %% Straight from the array: only July and August are looked at, and the surface is the same
+# %% Straight from the array: only July and August are read, and the surface is the same
 direct = tegl.slice(image, 20.0, at=7.3)
 print(f"straight from the array: {direct}")
 assert np.isclose(direct.measure().size, july.measure().size, rtol=1e-3)

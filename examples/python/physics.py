@@ -5,7 +5,7 @@
     examples/python/physics.py [OUTPUT_FOLDER]
 
 The energy density of an expanding fireball over tau, eta, y and x. Where it falls to 0.6 GeV/fm3 the matter freezes out:
-a hypersurface, here as a sum over elements d sigma_mu. The cells (# %%) are those of a notebook.
+a hypersurface, here as a sum over elements d sigma_mu. The cells (# %%) are as in a notebook.
 """
 
 # %% The fields that examples/make_samples.py writes

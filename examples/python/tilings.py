@@ -4,7 +4,7 @@
 
     examples/python/tilings.py
 
-The cells (# %%) are those of a notebook.
+The cells (# %%) are as in a notebook.
 """
 
 # %% The date line: a warm patch around longitude 180, in a world map from -180 to 180 degrees

@@ -254,8 +254,12 @@ def as_number(name: str, value: object) -> float:
     kind = getattr(getattr(value, "dtype", None), "kind", "")
     if not isinstance(value, (str, bytes, bytearray, bool)) and kind not in ("b", "c", "m", "M", "S", "U") and \
             not (kind and np.ndim(typing.cast(float, value))):
-        with contextlib.suppress(TypeError, ValueError):
+        try:
             return float(typing.cast(float, value))
+        except OverflowError:
+            raise ValueError(f"{name} is {reprlib.repr(value)}; expected a number in the range of float64") from None
+        except (TypeError, ValueError):
+            pass
     raise TypeError(f"{name} is {value!r}; expected a number") from None
 
 
@@ -428,6 +432,23 @@ def own_affine(data) -> np.ndarray | None:
     return matrix[order][:, [*order, len(axes)]]
 
 
+def mask_of(array) -> np.ndarray | None:
+    """Where a masked array, or a list of them, is masked; None if there is no mask."""
+    if isinstance(array, (list, tuple)) and any(isinstance(part, np.ma.MaskedArray) for part in array):
+        array = np.ma.array(array)
+    return np.ma.getmaskarray(array) if np.ma.getmask(array) is not np.ma.nomask else None
+
+
+def _array(data) -> np.ndarray:
+    """An array, or lists of numbers as one."""
+    if data is None:
+        raise TypeError("the array is None; expected an array")
+    try:
+        return np.asarray(data)
+    except ValueError:
+        raise ValueError(f"the array is {reprlib.repr(data)}, with rows of different lengths; expected equal ones") from None
+
+
 def _values(array: np.ndarray) -> np.ndarray:
     """The array in a type of the library; without a copy if possible."""
     if array.dtype.name not in _TYPES:
@@ -503,11 +524,12 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
                                  "tracks along the first or last axis")
             time_axis = found_axis
         data = data.data if isinstance(data.data, np.ndarray) else data.values
+    own_mask = mask_of(data)
+    if own_mask is not None:
+        mask = ~own_mask if mask is None else ~own_mask & booleans(mask)
     if isinstance(data, np.ma.MaskedArray):
-        if np.ma.getmask(data) is not np.ma.nomask:
-            mask = ~np.ma.getmaskarray(data) if mask is None else ~np.ma.getmaskarray(data) & booleans(mask)
         data = data.data
-    array = np.asarray(data)
+    array = _array(data)
     ndim = array.ndim
     if not 2 <= ndim <= 5:
         raise ValueError(f"the array has {ndim} axes; expected 2 to 5")

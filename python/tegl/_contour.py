@@ -60,7 +60,7 @@ class Contour:
         if normals is not None:
             normals = _arguments.real("normals", normals)
             if normals.shape != vertices.shape:
-                raise ValueError(f"normals have the shape {normals.shape}; expected {vertices.shape}, that of vertices")
+                raise ValueError(f"normals have the shape {normals.shape}; expected {vertices.shape}, as vertices")
         self._is_reversed = _arguments.turn_around(time_axis, ndim)
         turn = slice(None, None, -1) if self._is_reversed else slice(None)
 
@@ -129,7 +129,7 @@ class Contour:
     @property
     def simplex_attributes(self) -> dict[str, np.ndarray]:
         """Numbers of every simplex: name -> #S, or #S x width, in double precision. The columns of `normal`, from
-        `normals="flat"`, are in the order of those of `vertices`."""
+        `normals="flat"`, are in the order of the columns of `vertices`."""
         return {name: self._turned(values) if _is_flat_normal("simplex_attributes", name, values) else values
                 for name, (values, _) in self._core.simplex_attributes.items()}
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Dates and durations as numbers on an axis, by the unit that it has: "hours since 1900-1-1 00:00:0.0 UTC".
 
-Units are spelled as in UDUNITS, like in netCDF and xarray; calendars are those of the CF conventions (section 4.4.1).
+Units are spelled as in UDUNITS, like in netCDF and xarray; calendars are as in the CF conventions (section 4.4.1).
 Supported calendars: the standard one, which is Julian before 1582-10-15 and Gregorian from then on, and the proleptic
 Gregorian one of NumPy and Python.
 """

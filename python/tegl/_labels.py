@@ -18,7 +18,7 @@ def mask_of(array, label: float):
     if _arguments.is_xarray(array):
         mask = (array == label).astype(np.uint8)
         return mask.where(array.notnull()) if array.dtype.kind == "f" else mask
-    values = array if isinstance(array, np.ma.MaskedArray) else np.asarray(array)
+    values = np.asarray(array) if _arguments.mask_of(array) is None else np.ma.array(array)
     mask = (values == label).astype(np.uint8)
     if values.dtype.kind == "f" and np.isnan(values).any():
         mask = np.ma.where(np.isnan(values), np.float32(np.nan), mask.astype(np.float32))

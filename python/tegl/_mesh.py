@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _facets, _kinds, _tegl
+from . import _arguments, _facets, _kinds, _outside, _tegl
 from ._arguments import Progress
 from ._contour import Contour
 from ._facets import Facets
@@ -395,17 +395,10 @@ def contour_points(points, values, level: float, *, triangulation: _kinds.Triang
                         allow_empty=allow_empty, attributes=attributes, threads=threads, progress=progress)
 
 
-def _mask_of(array) -> np.ndarray | None:
-    """Where a masked array, or a list of them, is masked; None if there is no mask."""
-    if isinstance(array, (list, tuple)) and any(isinstance(part, np.ma.MaskedArray) for part in array):
-        array = np.ma.array(array)
-    return np.ma.getmaskarray(array) if np.ma.getmask(array) is not np.ma.nomask else None
-
-
 def _with_missing(values) -> np.ndarray:
     """Values with NaN for the masked ones."""
     array = _arguments.real("values", values).astype(np.float64, order="C", copy=False)
-    mask = _mask_of(values)
+    mask = _arguments.mask_of(values)
     if mask is None:
         return array
     array = array.copy(order="C")
@@ -414,7 +407,7 @@ def _with_missing(values) -> np.ndarray:
 
 
 def _require_unmasked(name: str, array) -> None:
-    mask = _mask_of(array)
+    mask = _arguments.mask_of(array)
     if mask is not None and mask.any():
         raise ValueError(f"{name} have {np.count_nonzero(mask)} masked numbers; expected none: only values may be masked")
 
@@ -525,12 +518,12 @@ def _cells_of(cells, ndim: int) -> _CellArrays:
             raise ValueError(f"cells are of type {name!r}; expected one of {_known_types()}")
         if name not in _TYPES:
             dimension = {7: 2, 42: 3, 103: 4}[_number_of(name)]
+            blocks.append(_polytope_arrays(name, block))
             if ndim != dimension and len(block) > 0:
                 raise ValueError(f"cells of type {name!r} with points in {ndim} dimensions; expected {dimension}")
-            blocks.append(_polytope_arrays(name, block))
             continue
         number, count = _TYPES[name]
-        array = _numbers_of(f"cells of type {name!r}", block)
+        array = _numbers_of(f"cells of type {name!r}", block if np.size(block) else np.empty((0, count), np.uint32))
         if array.shape[1] != count:
             raise ValueError(f"cells of type {name!r} have {array.shape[1]} corners; expected {count}")
         blocks.append((np.full(len(array), number, dtype=np.uint8), array.ravel(),
@@ -562,7 +555,7 @@ def _is_pair(block) -> bool:
 def _numbers_of(name: str, block) -> np.ndarray:
     _require_unmasked(name, block)
     array = np.asarray(block)
-    if array.dtype.kind not in "iu":
+    if array.size and array.dtype.kind not in "iu":  # an empty list has the type float64
         raise TypeError(f"{name} are of type {array.dtype}; expected integers")
     if array.ndim != 2:
         raise ValueError(f"{name} have the shape {array.shape}; expected (#C, corners)")
@@ -582,7 +575,8 @@ def _require_level(values: np.ndarray, level: float) -> None:
     """Raises a ValueError if an empty contour is due to the level."""
     present = values[~np.isnan(values)]
     if not present.size:
-        raise ValueError("all values are missing (NaN); expected values, or allow_empty=True for an empty contour")
+        raise ValueError("all values are missing (NaN); expected values, or allow_empty=True for an empty contour"
+                         if values.size else "the mesh has no points; expected some, or allow_empty=True for an empty contour")
+    least, most = str(present.min()), str(present.max())
     if not present.min() < level <= present.max():
-        raise ValueError(f"level is {level}; expected a level above {present.min()} and up to {present.max()}, the minimum and "
-                         "maximum of the values, or allow_empty=True for an empty contour")
+        raise _outside.level_error(level, least, most, "values")

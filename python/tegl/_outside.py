@@ -51,11 +51,18 @@ def require_level(prepared: Prepared, level: float, what: str = "contour") -> No
     allowed = ALLOWED.format(what)
     if least == "nan":
         raise ValueError(f"level is {level}, and all values of the array are missing (NaN or masked); expected values, {allowed}")
+    raise level_error(level, least, most, "array", unit, what)
+
+
+def level_error(level: float, least: str, most: str, of: str, unit: str = "", what: str = "contour") -> ValueError:
+    """The error of a level outside of the values from `least` to `most`. `of`: the array, or the values of a mesh."""
+    allowed = ALLOWED.format(what)
     if least == most:
-        raise ValueError(f"level is {level}, and all values of the array are {least}{unit}; expected a level between two values, "
-                         f"{allowed}")
-    raise ValueError(f"level is {level}; expected a level above {least} and up to {most}{unit}, the minimum and maximum "
-                     f"of the array, {allowed}")
+        all_values = "values" if of == "values" else f"values of the {of}"
+        return ValueError(f"level is {level}, and all {all_values} are {least}{unit}; expected a level between two values, "
+                          f"{allowed}")
+    return ValueError(f"level is {level}; expected a level above {least} and up to {most}{unit}, the minimum and maximum "
+                      f"of the {of}, {allowed}")
 
 
 def without_axis(extent: np.ndarray | None, axis: int) -> np.ndarray | None:

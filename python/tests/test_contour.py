@@ -197,6 +197,10 @@ def test_masked_samples_are_missing():
     assert expected.check().is_manifold
     assert_same(tegl.contour(array, 0.1, mask=mask), expected)
     assert_same(tegl.contour(np.ma.masked_array(array, ~mask), 0.1), expected)
+    layers = [np.ma.masked_array(layer, ~valid) for layer, valid in zip(array, mask)]
+    assert_same(tegl.contour(layers, 0.1), expected)
+    labels = np.ma.masked_array((2 * array).astype(np.int16), ~mask)
+    assert_same(tegl.contour(list(labels), label=1), tegl.contour(labels, label=1))
     assert_same(tegl.contour(np.ma.masked_array(array, array > 9), 0.1, mask=mask), expected)
     assert np.isfinite(array).all(), "the caller's array is not written to"
     whole = (array * 100).astype(np.int16)

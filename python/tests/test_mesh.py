@@ -188,6 +188,8 @@ def test_an_index_gives_the_contours_of_the_mesh():
     (dict(times=[0.0, 1.0]), ValueError, "values have the shape (27,); expected (2, 27)"),
     (dict(times=[1.0, 0.0], values=np.zeros((2, 27))), ValueError, "expected ascending times"),
     (dict(level=7.0), ValueError, "level is 7.0; expected a level above"),
+    (dict(values=np.zeros(27)), ValueError, "level is 0.0, and all values are 0.0; expected a level between two values"),
+    (dict(points=np.zeros((0, 3)), cells={"tetra": []}, values=[]), ValueError, "the mesh has no points; expected some"),
     (dict(normals="sobel"), ValueError, "normals of a mesh are 'sobel'; expected True"),
     (dict(dtype="int32"), ValueError, "expected float32 or float64"),
 ])

@@ -120,7 +120,8 @@ def test_files_of_polyhedra(tmp_path):
     ({"polyhedron": [[[[0, 1, 2]]]]}, TypeError, "have a list of lists, [[0, 1, 2]]; expected lists of numbers"),
     ({"polyhedron": [[[[0, 1], [2]]]]}, TypeError, "have a list of lists, [[0, 1], [2]]; expected lists of numbers"),
     ({"polygon": [3, 4]}, TypeError, "cells of type 'polygon' have 3 in the place of a list"),
-    ({"polygon": [[0, 1, 2, 3, 4]]}, ValueError, "cell 0: type 7 (polygon); expected a 3D cell"),
+    ({"polygon": [[0, 1, 2, 3, 4]]}, ValueError, "type 'polygon' with points in 3 dimensions; expected 2"),
+    ({"polyhedron": [[[]]]}, ValueError, "cell 0: a polyhedron of 1 faces; expected 4 to 124"),
     ({"polyeder": [[0, 1, 2, 3, 4]]}, ValueError, "'polyhedron'"),
 ])
 def test_bad_cells_are_errors_that_name_them(cells, error, text):

@@ -218,6 +218,13 @@ TEST_F(Errors, AFileThatGrowsBeyondItsLimitExitsWith6InEveryFormat) {
       expect_contour_failure(6, ball_file(), "0", path(name), {path(name), "File too large"});
       ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
     }
+  for (const std::string& name : {path("out.nc"), path("out.nrrd"), path("out.vti")}) {
+    const rlimit small{300, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    expect_failure(6, {"filter", ball_file(), "--gaussian", "1", "-o", name},
+                   {name + ": cannot be written (File too large)"});
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  }
 }
 
 TEST_F(Errors, AReportThatCannotBeWrittenExitsWith6) {

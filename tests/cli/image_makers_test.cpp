@@ -376,6 +376,7 @@ TEST_F(ImageMakers, NameWhatIsWrong) {
   expect_refused({"sample", "ball", "--size", "5,4", "-o", out}, "--size has 2 numbers; expected one", 2);
   expect_refused({"sample", "ball", "--size", "1", "-o", out}, "--size has 1; expected whole numbers from 2", 2);
   expect_refused({"sample", "ball", "--range", "1:0", "-o", out}, "--range is '1:0'", 2);
+  expect_refused({"sample", "ball", "--range=-1e308:1e308", "-o", out}, "--range is '-1e308:1e308'", 2);
   expect_refused({"sample", "ball", "--lattice", "d4", "--dim", "3", "-o", out},
                  "--lattice d4 with --dim 3; expected 4", 2);
   expect_refused({"sample", "x +", "--set", "a=1", "-o", out}, "--set with an expression", 2);

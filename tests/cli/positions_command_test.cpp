@@ -153,7 +153,9 @@ TEST_F(PositionsCommand, WrongOptionsAreRefused) {
   expect_refused({"--positions", "relaxed", "--stream", "-o", output}, "--positions relaxed with --stream");
   expect_refused({"--positions", "relaxed", "--pick", "1,2,3", "-o", output}, "--positions relaxed with --pick");
   expect_refused({"--positions", "relaxed", "--facets", "-o", path("none.vtu")}, "--positions relaxed with --facets");
-  expect_refused({"--positions", "relaxed", "--periodic", "x", "-o", output}, "with --periodic or --lattice");
+  expect_refused({"--positions", "relaxed", "--periodic", "x", "-o", output}, "--positions relaxed with --periodic x;");
+  expect_refused({"--positions", "relaxed", "--division", "kuhn", "-o", output},
+                 "--positions relaxed with --division kuhn; expected one of the two");
   const std::string small =
       write("small.nii", nifti_bytes(sample({24, 22, 5}, [](const auto&) { return 1.0; }), {1, 1, 1}));
   expect_refused({"--positions", "filtered", "--positions-image", small, "-o", output},

@@ -15,7 +15,7 @@
 namespace tegl::cli {
 
 /// The remaining time of work that has taken `seconds` for `fraction` of it and continues at the same rate, as in
-/// "3 min left". Empty if that is too short to tell.
+/// "3 min left". Empty before 2 s or 1 % of the work, and at the end.
 [[nodiscard]] std::string time_left(double seconds, double fraction);
 
 /// A progress bar on a terminal, with the estimated remaining time of long stages; one stage after the other. Draws

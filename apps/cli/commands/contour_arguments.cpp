@@ -124,7 +124,7 @@ void ContourArguments::require_positions() const {
   if (picks()) positions.refuse("--pick");
   if (extraction.polygon_triangulation()) positions.refuse("a triangulation of polygons");
   const Tiling tiling = extraction.tiling();
-  if (!tiling.is_plain() && !tiling.of_cells) positions.refuse("--periodic or --lattice");
+  if (!tiling.is_plain() && !tiling.of_cells) positions.refuse(extraction.given_tiling());
   positions.require();
 }
 
@@ -141,8 +141,7 @@ void ContourArguments::require_scale_space() {
   scales.refuse(!index.empty(), "--index");
   scales.refuse(facets, "--facets");
   scales.refuse(attributes.wanted(), "--attribute");
-  scales.refuse(!extraction.tiling().is_plain() && !extraction.tiling().of_cells,
-                "--periodic, --lattice or --division");
+  scales.refuse(!extraction.tiling().is_plain() && !extraction.tiling().of_cells, extraction.given_tiling());
 }
 
 void ContourArguments::require_one_file_of_several(std::size_t isovalues) const {

@@ -10,7 +10,7 @@
 
 namespace tegl::cli {
 
-/// Whether a file name is that of an index file.
+/// Whether a file is an index, by its name.
 bool is_index_file(const std::filesystem::path& path);
 
 /// The header of an index file, as text or as JSON. Throws MalformedFile, UnsupportedFormat.

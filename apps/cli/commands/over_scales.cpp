@@ -23,7 +23,7 @@ void ScaleSpaceArguments::add_to(CLI::App& app) {
   app.add_option("--factors", factors_, kFactorsHelp)->type_name("NUMBERS");
 }
 
-void ScaleSpaceArguments::refuse(bool given, const char* with) const {
+void ScaleSpaceArguments::refuse(bool given, const std::string& with) const {
   if (given && are_given())
     throw Error(ErrorCode::InvalidArgument, fmt::format("--scale-space with {}; expected one of the two", with));
 }

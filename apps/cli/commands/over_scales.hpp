@@ -22,7 +22,7 @@ class ScaleSpaceArguments {
 
   [[nodiscard]] bool are_given() const { return option_->count() > 0; }
   /// Throws InvalidArgument if the option is given, with another option that it does not go with.
-  void refuse(bool given, const char* with) const;
+  void refuse(bool given, const std::string& with) const;
   /// Parses the scales. Throws InvalidArgument unless they are at least two, positive and ascending, and
   /// for --factors without them.
   void require();

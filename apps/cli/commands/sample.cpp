@@ -56,7 +56,7 @@ class SampleCommand final : public Command {
     app().add_option("FIELD", field_, "name of a field, or an expression")->required();
     app().add_option("-o,--output", output_, std::string("the samples: ") + kImageFiles)->type_name("FILE")->required();
     dim_option_ = app()
-                      .add_option("--dim", dim_, "number of axes, 2 to 5; default: that of --lattice, else 3")
+                      .add_option("--dim", dim_, "number of axes, 2 to 5; default: as --lattice needs, else 3")
                       ->check(whole_number(2, 5))
                       ->type_name("COUNT");
     app()
@@ -151,6 +151,8 @@ class SampleCommand final : public Command {
     const double first = parse_finite("--range", ends[0]), last = parse_finite("--range", ends[1]);
     if (!(first < last))
       throw Error(ErrorCode::InvalidArgument, fmt::format("--range is '{}'; expected FIRST less than LAST", range_));
+    if (!std::isfinite(last - first))
+      throw Error(ErrorCode::InvalidArgument, fmt::format("--range is '{}'; expected ends of finite distance", range_));
     std::vector<double> sizes;
     for (const std::string_view part : split(size_, ',')) {
       sizes.push_back(parse_finite("--size", part));
@@ -187,8 +189,9 @@ class SampleCommand final : public Command {
       info.lattice = lattice;
       stream_image_result(layers, info, bar, result);
     } catch (const std::bad_alloc&) {
-      throw Error(ErrorCode::TooLarge, fmt::format("out of memory for a layer of {} samples; expected a smaller --size",
-                                                   fmt::join(grid.sizes(), " x ")));
+      throw Error(ErrorCode::TooLarge,
+                  fmt::format("out of memory for a layer of an image of {} samples; expected a smaller --size",
+                              fmt::join(grid.sizes(), " x ")));
     }
   }
 

@@ -16,7 +16,7 @@
 
 namespace tegl::cli {
 
-/// Replaces names of library options in an error message by those of the program.
+/// Replaces names of library options in an error message by the program's names.
 std::string with_option_names(std::string message);
 
 /// Calls `read`; if the image has 5 axes, which it refuses, throws InvalidArgument that names the option.

@@ -15,7 +15,7 @@
 namespace tegl::cli {
 
 /// Throws UnsupportedData unless an image of --attribute has the samples' places of the image that is contoured. A file
-/// that records no lattice has that of the contour.
+/// that records no lattice has the contour's.
 template <int N>
 void require_same_lattice(const Grid<N>& image, const ImageInfo& info, const std::string& file, const Grid<N>& contour,
                           Lattice lattice) {

@@ -32,7 +32,7 @@ struct MeshInput {
   [[nodiscard]] bool is_moving() const { return mesh.times.size() > 1; }
 };
 
-/// The space of the mesh; the extents of its axes are those of its points, then that of its times.
+/// The space of the mesh. The extents of its axes are the ranges of its points' coordinates, then of its times.
 CutSpace space_of(const MeshInput& input);
 
 /// Reads the files, without a complex.

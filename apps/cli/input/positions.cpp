@@ -201,7 +201,7 @@ PositionOptions PositionArguments::library_options(const AnyImage& image, ReadIm
   const FileAndVariable from = parse_file_and_variable(file_);
   reading.variable = from.variable;
   const ReadImageResult other = read_other_image(from.file, reading);
-  if (other.info.lattice)  // its samples lie at other places than those of an image on a cubic grid
+  if (other.info.lattice)  // its samples do not lie on a cubic grid
     throw Error(ErrorCode::UnsupportedData,
                 fmt::format("--positions-image {} is on the lattice {}; expected an image on a cubic grid", file_,
                             name_of(*other.info.lattice)));
@@ -211,7 +211,7 @@ PositionOptions PositionArguments::library_options(const AnyImage& image, ReadIm
                 fmt::format("--positions-image {} has {} samples; expected {}, as the image", file_,
                             fmt::join(actual, " x "), fmt::join(expected, " x ")));
   const auto copy = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
-    // float holds all integers of 16 bits, but not those of 32
+    // float holds all integers of 16 bits, but not all of 32
     using Held = std::conditional_t<std::is_same_v<T, float> || sizeof(T) < sizeof(float), float, double>;
     options.filtered = values.emplace<std::vector<Held>>(owned.values.begin(), owned.values.end());
   };

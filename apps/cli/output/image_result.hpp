@@ -58,7 +58,7 @@ void write_image_result(const Image<T, N>& image, const ImageInfo& info, Progres
   result.write_seconds = watch.lap();
 }
 
-/// Layers that keep the error of reading them, to tell it from errors of the output.
+/// Layers that keep the error of reading them, to distinguish it from errors of the output.
 template <Value T, int N>
 class WatchedLayers final : public LayerReader<T, N> {
  public:

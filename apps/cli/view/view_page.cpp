@@ -110,7 +110,7 @@ std::vector<std::uint32_t> components_by_size(const ComponentLabels& labels) {
   return result;
 }
 
-/// Attributes as scalars: those of several numbers are replaced by their length.
+/// Attributes as scalars: vectors are replaced by their length.
 Json describe_attributes(const std::vector<Attribute>& attributes, PageNumbers& numbers) {
   Json list = Json::array();
   for (const Attribute& attribute : attributes) {

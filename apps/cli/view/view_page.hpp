@@ -30,7 +30,7 @@ class PageNumbers {
   Json add(std::span<const double> values, std::size_t width) { return add_any("f8", values, width); }
   Json add(std::span<const std::uint32_t> values, std::size_t width) { return add_any("u4", values, width); }
   Json add(std::span<const std::int8_t> values, std::size_t width) { return add_any("i1", values, width); }
-  /// Adds vertex numbers of simplices: the first as difference from that of the previous simplex, the others as
+  /// Adds vertex numbers of simplices: the first as difference from the previous simplex's first, the others as
   /// differences from the first.
   Json add_simplices(std::span<const Index> corners, std::size_t width);
 

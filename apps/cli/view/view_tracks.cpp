@@ -17,7 +17,7 @@ namespace {
 
 constexpr Index kNone = TrackGraph::kNoSegment;
 
-/// The segment that continues a part after this segment: the only one, or that of the same track.
+/// The segment that continues a part after this segment: the only one, or the one of the same track.
 Index next_segment(const TrackGraph& graph, const TrackSegment& segment) {
   const std::vector<Index>& out = graph.events[segment.to].out;
   if (out.size() == 1) return out.front();

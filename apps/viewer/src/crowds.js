@@ -2,13 +2,13 @@
 //
 // Events that are drawn on top of each other: crowds, each drawn as one mark with a number.
 
-const APART = 8; // pixels: dots that are nearer to each other cannot be told apart
+const APART = 8;   // pixels: nearer dots look like one
 const WIDEST = 22; // pixels that a mark stands for, at most
 
 /** The width of a mark with a number, in pixels. */
 export const widthOf = (count) => Math.min(WIDEST - 1, 7 + 5 * String(count).length);
 
-/** Members from x to x + WIDEST as one mark each; what is alone stays where it is. */
+/** Members from x to x + WIDEST as one mark each; single members stay in their places. */
 function split(chain) {
   const from = chain[0].x;
   const extent = chain.at(-1).x - from;

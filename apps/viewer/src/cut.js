@@ -299,7 +299,7 @@ class CutAtVertices {
     return POLYGONS[high].map(([below, above]) => this.key(simplices[4 * s + below], simplices[4 * s + above]));
   }
 
-  /** What is cut out of each tetrahedron, with points around vertices of the cut drawn together unless `isApart`. */
+  /** The polygon in each tetrahedron. Points around a vertex of the cut become one, unless `isApart`. */
   pieces(isApart) {
     const result = [];
     for (const { s, on, high } of this.touching) {

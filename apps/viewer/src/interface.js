@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What scripts (and tests) may do with the page: window.tegl. What they ask for is looked at first: an Error names the
-// value and what was expected, and leaves the page as it is.
+// The functions of the page for scripts (and tests): window.tegl. They check their arguments first: an Error names the
+// value and the expected one, and the page does not change.
 
 const shown = (value) => (typeof value === 'string' ? `'${value}'` : Array.isArray(value) ? `[${value.map(shown)}]`
   : value !== null && typeof value === 'object' ? 'an object' : typeof value === 'function' ? 'a function' : String(value));
@@ -38,7 +38,7 @@ export function interfaceOf(app) {
       app.colorBy(id);
     },
     colorings: () => app.current.sources().map(({ id }) => id),
-    /** Shows what lies from a share of an axis' range to another alone. */
+    /** Shows only the part between two shares of an axis' range. */
     clip: (axis, from, to) => {
       const { axes } = app.stage;
       const isShare = (share) => Number.isFinite(share) && share >= 0 && share <= 1;

@@ -111,7 +111,7 @@ export class Stage {
   reset() {
     const flat = !this.isFlat && this.sides[2] < 0.5 * Math.max(this.sides[0], this.sides[1]);
     const direction = this.isFlat ? new THREE.Vector3(0, 0, 1) : new THREE.Vector3(0.55, -1.5, flat ? 1.15 : 0.75);
-    // Patients are looked at from the front.
+    // Patients are seen from the front.
     if (this.world?.[1] === 'A') direction.multiply(new THREE.Vector3(-1, -1, 1));
     // What is left of the last movement is not to go on.
     this.controls.enableDamping = false;
@@ -226,7 +226,7 @@ export class Stage {
     this.redraw();
   }
 
-  /** Shows what lies from lower[a] to upper[a] alone. */
+  /** Shows only the part from lower[a] to upper[a]. */
   setClip(lower, upper) {
     // A little more than the box, as its own sides are rounded.
     const margin = (a) => 1e-5 * (this.extents[a] || 1);
@@ -269,7 +269,7 @@ export class Stage {
     return { x: ((point.x + 1) / 2) * clientWidth, y: ((1 - point.y) / 2) * clientHeight, z: point.z };
   }
 
-  /** The edges of the box's outline along an axis, as seen: of their two faces one alone is towards the eye. */
+  /** The edges of the box's outline along an axis, as seen: exactly one of their two faces is towards the eye. */
   outline(a) {
     const others = [0, 1, 2].filter((b) => b !== a);
     const faces = (b, side) => side * this.camera.position.getComponent(b) > (this.sides[b] ?? 0) / 2;

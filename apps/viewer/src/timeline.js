@@ -27,7 +27,7 @@ function make(name, attributes, parent) {
   return element;
 }
 
-/** A lane for each track, such that those of one lane do not overlap. `gap`: least time between them. */
+/** A lane for each track, such that tracks of one lane do not overlap. `gap`: least time between them. */
 function lanesOf(tracks, gap) {
   const ends = [];
   const lanes = new Map();

@@ -13,7 +13,7 @@
 
 namespace tegl::gen {
 
-/// Proves lists with CubeEmbedding, from their triangles and masks alone.
+/// Proves lists with CubeEmbedding, from their triangles and masks only.
 class CubeListCertifier {
  public:
   /// Proves that no two triangles intersect, for all positions. Throws Error{CertificateFailed} with `name` otherwise.

@@ -168,7 +168,7 @@ std::optional<CubeSurface> RadialFilling::fill(unsigned signature, const std::ve
   return in_order(surface);
 }
 
-/// The region's corners are those of its sign that edges connect with its polygons.
+/// The region has the corners of its sign that edges connect with its polygons.
 RadialFilling::Region RadialFilling::region_of(unsigned signature, const std::vector<CubePolygon>& polygons,
                                                bool is_high) const {
   const unsigned inside = (is_high ? signature : ~signature) & 0xffu;

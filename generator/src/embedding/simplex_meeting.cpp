@@ -44,7 +44,7 @@ std::array<Wide, 5> cross_product_of_all(const Differences& rows) {
 }
 
 /// A solution of sum(weight[i] * difference i) = 0 for `count` points, up to a factor, by the coordinates in `axes`,
-/// which are count - 2. All zero if they do not determine it. The last weight is that of the first point.
+/// which are count - 2. All zero if they do not determine it. The last weight belongs to the first point.
 std::array<Wide, 6> dependence(const Differences& differences, unsigned axes, std::size_t count) {
   std::array<Wide, 5> weights;
   if (count == 6) {

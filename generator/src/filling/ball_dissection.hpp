@@ -21,10 +21,10 @@ struct BallDissection {
   [[nodiscard]] bool empty() const { return tetrahedra.empty(); }
 };
 
-/// Searches for few tetrahedra that fill the ball inside a triangulated sphere, counting those of the cone over `rest`.
-/// `sigma` must allow each tetrahedron on own vertices. Returns an empty result if at most `limit` tetrahedra do not
-/// suffice. The result depends on the set of triangles only, not on their order or orientation. It is not oriented:
-/// vertices ascend.
+/// Searches for few tetrahedra that fill the ball inside a triangulated sphere, counting the tetrahedra of the cone
+/// over `rest`. `sigma` must allow each tetrahedron on own vertices. Returns an empty result if at most `limit`
+/// tetrahedra do not suffice. The result depends on the set of triangles only, not on their order or orientation. It is
+/// not oriented: vertices ascend.
 ///
 /// Tetrahedra are removed from the ball one by one so that the rest is always a ball: either around a vertex with three
 /// triangles, which removes the vertex, or over two triangles with a common edge, which exchanges the edge for the

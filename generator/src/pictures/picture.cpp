@@ -63,7 +63,7 @@ struct View {
   }
 };
 
-/// Visible corners and edges of a tile: those of the faces that point towards the eye.
+/// Visible corners and edges of a tile: they belong to faces that point towards the eye.
 struct Visible {
   std::vector<bool> corners, edges;
 

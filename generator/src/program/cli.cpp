@@ -489,18 +489,18 @@ options of --count, --classes, --certify, --out, and without a command
                                     (prisms over an interval of time) or cross4 (the 16-cell)
 
 options of --count
-  --group full|rotations            all symmetries (default) or those of determinant +1
+  --group full|rotations            all symmetries (default) or only rotations
   --inversion                       also the exchange of high and low
   --json                            one object: dim, group, inversion, order, orbits. All numbers are plain JSON
                                     integers; from N = 7 on orbits exceeds 2^53, so read it as a big integer
 
 options of --transversal
-  --group full|rotations            all symmetries (default) or those of determinant +1
+  --group full|rotations            all symmetries (default) or only rotations
   --list                            prints the signatures instead, ascending, each with its orbit's length
   --json                            the same as JSON
 
 options of --symmetries
-  --group full|rotations            all symmetries (default) or those of determinant +1
+  --group full|rotations            all symmetries (default) or only rotations
   --inversion                       also the exchange of high and low
   --json                            all elements and classes as JSON
 

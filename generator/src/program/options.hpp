@@ -44,7 +44,7 @@ enum class LayoutChoice {
 /// Which triangulations are emitted.
 enum class TriangulationChoice { Barycentric, Compact, All };
 
-/// A checked command line. Defaults equal those of the command line.
+/// A checked command line, with the same defaults.
 struct Options {
   Command command = Command::Help;             ///< the command
   int dim = 0;                                 ///< --dim; 0 for --help and --version

@@ -21,7 +21,7 @@ inline constexpr int kMaxDim = 8;
 /// Highest dimension whose signatures (2^n bits) fit in 32 bits.
 inline constexpr int kMaxSignatureDim = 5;
 
-/// All symmetries of the cube, or only those of determinant +1.
+/// All symmetries of the cube, or only its rotations (determinant +1).
 enum class GroupKind { Full, Rotations };
 
 /// One symmetry of the n-cube. Corners map by `v -> pi(v) ^ flip`; if `inverts`, high and low are then exchanged.

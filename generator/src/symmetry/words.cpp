@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view kAxes = "xyzt";
 
-/// The rotation by a quarter turn that maps the direction of axis `from` to that of axis `to`.
+/// The rotation by a quarter turn that maps the direction of axis `from` to the direction of axis `to`.
 Element quarter_turn(std::size_t from, std::size_t to) {
   Element g;
   g.axis[from] = static_cast<std::uint8_t>(to);

@@ -72,7 +72,7 @@ using CellSigns = std::vector<std::vector<std::uint64_t>>;
 /// such a cell, and a polygon of three or four corners a triangle or a quadrilateral.
 ///
 /// A 4D polytope is given by its facets, and a facet as a polyhedron is, by its faces. The faces of a polytope are
-/// listed twice, once in each of the two facets that have it. Its facets must be as those of a convex polytope: a
+/// listed twice, once in each of the two facets that have it. Its facets must be as in a convex polytope: a
 /// closed 3-sphere, and two facets have nothing, a corner, an edge or a face in common. (Homology spheres pass, too.)
 /// A polytope with the facets of a 4-simplex, a 16-cell or a prism over a cell with a type is such a cell.
 /// Compact contours are manifolds if no two cells have several facets in common.

@@ -25,7 +25,7 @@ inline constexpr Index kNoSimplex = std::numeric_limits<Index>::max();
 /// In place of a simplex across a face: the face is in more than two simplices.
 inline constexpr Index kSeveralSimplices = kNoSimplex - 1;
 
-/// The incidence of the simplices of one contour in N = 2 to 5 dimensions, from its vertex numbers alone. Immutable;
+/// The incidence of the simplices of one contour in N = 2 to 5 dimensions, only from its vertex numbers. Immutable;
 /// copies share their memory. `check`, `components`, `measure`, `track` and `outline` accept it after the contour and
 /// then give the same result in less time. They throw InvalidArgument if the contour has other simplices than the one
 /// that it was made of. The coordinates, normals and attributes of the contour may differ.

@@ -71,7 +71,7 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5>
 struct Merging {
   Contour<N, Real> contour = {};  ///< the result
-  MergeReport<N> report = {};     ///< what was done
+  MergeReport<N> report = {};     ///< numbers of changes
 };
 
 /// Merges vertices that coincide. Each vertex is replaced by the nearest one before it that stays, if this is within

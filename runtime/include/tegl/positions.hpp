@@ -24,7 +24,7 @@ namespace tegl {
 /// - custom: by a function of the two samples.
 /// - gravitation: first linear; then the vertex is moved off its edge, across it, towards neighbouring samples of the
 ///   sides that attract it. For masks.
-/// - relaxed: from the sides alone, whatever the values: smooth, without the stair steps of masks and labels, without
+/// - relaxed: from the sides only, not from the values: smooth, without the stair steps of masks and labels, without
 ///   shrinking (docs/positions.md).
 enum class Positions { linear, filtered, custom, gravitation, relaxed };
 

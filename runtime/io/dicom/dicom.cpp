@@ -447,7 +447,7 @@ Volume arrange(std::vector<DicomFile> files) {
   return volume;
 }
 
-/// The conversion of stored values to those of the image.
+/// The conversion of stored values to the image's values.
 struct Rescaling {
   std::string type;  ///< of the result
   bool any = false;

@@ -274,7 +274,7 @@ Members join(std::vector<Member>&& members, const SeriesOptions& options) {
   return result;
 }
 
-/// Reads the values of `count` files; nullopt as soon as the scaling of a file is not that of `members.info`.
+/// Reads the values of `count` files; nullopt as soon as a file has another scaling than `members.info`.
 std::optional<ValueArray> read_values(const Members& members, std::size_t begin, std::size_t count,
                                       const Progress& progress, const MemberReader& read) {
   ValueArray values = array_of_type(name_of_type(members.type));

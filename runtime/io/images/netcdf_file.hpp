@@ -46,7 +46,7 @@ class NcFile {
   NcFile& operator=(const NcFile&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
-  /// All variables; those of groups come after those of the root.
+  /// All variables: first the root's, then the groups'.
   [[nodiscard]] std::vector<NcVariable> variables() const;
   [[nodiscard]] std::string dimension_name(const NcVariable& variable, std::size_t dimension) const;
   /// The coordinate variable of a dimension: one-dimensional, with its name, in the variable's group or a parent.

@@ -76,6 +76,8 @@ class NetcdfWriter final : public LayerWriter {
 
  private:
   void check(int status, const char* what) const {
+    // Positive ones are errors of the system, such as a full disk.
+    if (status > 0) fail(ErrorCode::WriteFailed, target_, "cannot be written ({})", nc_strerror(status));
     if (status != NC_NOERR) fail(ErrorCode::WriteFailed, target_, "{}: {}", what, nc_strerror(status));
   }
   void put_text(int variable, const char* name, const std::string& text) const {

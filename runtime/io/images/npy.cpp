@@ -244,7 +244,7 @@ StoredImage open_array(const Prefix& prefix, StoredSamples&& samples, const fs::
   return image_of(text, std::move(samples), path, member);
 }
 
-/// The names of the arrays in an archive: those of its members without ".npy".
+/// The names of the arrays in an archive: its members' names without ".npy".
 std::optional<std::string_view> array_name(const ZipMember& member) {
   constexpr std::string_view kSuffix = ".npy";
   std::string_view name = member.name;

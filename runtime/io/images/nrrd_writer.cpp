@@ -147,7 +147,7 @@ std::unique_ptr<LayerWriter> write_nrrd(const PendingPath& file, const ImageHead
   for (std::size_t a = 0; a < head.axes(); ++a) {
     sizes += fmt::format(" {}", head.grid.axes[a].size());
     labels += " " + quoted(head.axis_name(a));
-    // an axis with a direction has no unit of its own, but that of the space
+    // an axis with a direction has no unit of its own, but the unit of the space
     units += " " + quoted(a < directed ? std::string() : head.grid.axes[a].unit);
     centers += head.info.samples_are_cells ? " cell" : " node";
   }

@@ -20,7 +20,7 @@ struct StoredImage {
   std::optional<std::size_t> list_axis;
   /// The file stores the axes in the reverse order: the image's last axis is the fastest there.
   bool is_reversed = false;
-  /// Converts stored values to those of the image; empty if they are equal.
+  /// Converts stored values to the image's values; empty if they are equal.
   std::function<ValueArray(ValueArray&&)> convert;
 };
 

@@ -48,7 +48,7 @@ Positions positions(const MeshView& mesh, const std::filesystem::path& path) {
   return result;
 }
 
-/// Converts normals; glTF requires length 1, so those of length 0 become (0, 0, 1).
+/// Converts normals; glTF requires length 1, so normals of length 0 become (0, 0, 1).
 std::vector<std::array<float, 3>> normals(const MeshView& mesh) {
   std::vector<std::array<float, 3>> result(mesh.normals.size() / static_cast<std::size_t>(mesh.space_dim));
   for (std::size_t v = 0; v < result.size(); ++v) {

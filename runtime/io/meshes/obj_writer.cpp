@@ -52,7 +52,7 @@ void write_obj(const MeshView& mesh, const PendingPath& pending, const Progress&
     out.put_text(mesh.dim == 1 ? "l" : "f");
     for (std::size_t c = 0; c < corners; ++c) {
       const std::uint64_t number = std::uint64_t{mesh.simplices[s * corners + c]} + 1;
-      // OBJ lines cannot refer to normals; those of segments are only listed in the file.
+      // OBJ lines cannot refer to normals; normals of segments are only listed in the file.
       if (with_normals && mesh.dim == 2)
         out.put_format(" {}//{}", number, number);
       else

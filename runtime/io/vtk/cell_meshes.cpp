@@ -48,7 +48,7 @@ struct FileMesh {
   std::vector<std::string> remarks;
 };
 
-/// Adds the faces of a prism whose corners are those of two polygons.
+/// Adds the faces of a prism between two polygons.
 void add_prism_faces(std::span<const Index> own, std::size_t sides, FileMesh& mesh) {
   const auto end_face = [&] { mesh.face_ends.push_back(mesh.face_corners.size()); };
   for (const std::size_t layer : {std::size_t{0}, sides}) {

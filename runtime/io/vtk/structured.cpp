@@ -82,7 +82,7 @@ ValueArray read_structured(const VtkFile& file, std::string_view parent, const s
     const VtkExtent extent = read_extent(file, *pieces.front(), "Extent");
     if (extent == whole) return read_piece(*pieces.front(), whole);
   }
-  // All pieces are read first: their sizes are then known to be those of data, and so is that of the whole.
+  // All pieces are read first: their sizes, and the size of the whole, are then known to fit the data.
   std::vector<std::pair<VtkExtent, ValueArray>> parts;
   std::uint64_t sum = 0;
   for (const XmlElement* const piece : pieces) {

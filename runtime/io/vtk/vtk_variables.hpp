@@ -26,7 +26,7 @@ struct VtkVariable {
   [[nodiscard]] std::string_view parent() const { return on_cells ? "CellData" : "PointData"; }
 };
 
-/// The arrays of the first piece: of points, then those of cells that have another name. Arrays of numbers of points
+/// The arrays of the first piece: of points, then of cells if their names differ. Arrays of numbers of points
 /// and cells, and vtkGhostType, are left out.
 std::vector<VtkVariable> variables_of(const VtkFile& file);
 

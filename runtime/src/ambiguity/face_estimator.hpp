@@ -65,7 +65,8 @@ class FaceEstimator {
   [[nodiscard]] bool is_square_high(const Index& base, unsigned axes, std::span<const double, 4> values) const noexcept;
   /// Whether squares are decided by their saddles, and cubes by decide_cube (tegl/saddle.hpp) unless `separates`.
   [[nodiscard]] bool is_by_saddles() const noexcept { return rule_.by == FaceRule::By::saddles; }
-  /// Whether squares are decided by the means of their corners, and larger faces likewise unless `separates`.
+  /// Whether squares are decided by the means of their corners, and larger faces by the means of theirs, unless
+  /// `separates`.
   [[nodiscard]] bool is_by_means() const noexcept { return rule_.by == FaceRule::By::means; }
   /// Whether cubes and larger faces are always `separate`.
   [[nodiscard]] bool separates() const noexcept { return rule_.separates; }

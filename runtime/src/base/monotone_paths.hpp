@@ -17,7 +17,7 @@ using VertexPair = std::pair<std::uint8_t, std::uint8_t>;
 
 /// Calls visit(pairs) for each monotone path: from the first vertices of both simplices to the last ones, one step at a
 /// time. `first_count`: vertices of the first simplex, 1 to Pairs; the second one has Pairs + 1 - first_count. The
-/// division of a face is that of the face's own product, so products that have a common face divide it alike.
+/// division of a face is the division of the face's own product, so products that have a common face divide it alike.
 template <int Pairs, class Visit>
 constexpr void for_each_monotone_path(int first_count, const Visit& visit) {
   for (unsigned steps = 0; steps < 1u << (Pairs - 1); ++steps) {  // bit i: step i is in the first simplex

@@ -63,8 +63,8 @@ BorderFacets find_border_of(std::size_t points, const CellGroups& cells, const W
         use.place = place++;
       }
   });
-  // Of a face of a polyhedron, the four smallest corners: different faces share two at most. Likewise of a facet of a
-  // 4D polytope (key_of_facet).
+  // The four smallest corners of a polyhedron's face: different faces share two at most. The key of a 4D polytope's
+  // facet has four corners, too (key_of_facet).
   std::vector<std::uint64_t> first_of{first.back()};  // by polytope
   for (std::size_t c = 0; c < cells.polytopes.size(); ++c)
     first_of.push_back(first_of.back() + cells.polytopes.shape(c).facet_count());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Compares values with the isovalue and gathers the bits of cells' corners. Highway's foreach_target compiles this file
-// once per instruction set: values are compared several at a time, tetrahedra and quadrilaterals gathered likewise.
+// once per instruction set: values are compared several at a time, and so are tetrahedra and quadrilaterals.
 #include "complex/cell_signatures.hpp"
 
 #undef HWY_TARGET_INCLUDE

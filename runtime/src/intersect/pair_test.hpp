@@ -56,7 +56,7 @@ class PairTest {
   const SimplexPlanes<N>& simplices_;
   Side a_, b_;
   Bounds a_bounds_{};             ///< of all corners of the loaded simplex
-  std::array<int, N> partner_{};  ///< by common corner of a_, that of b_
+  std::array<int, N> partner_{};  ///< by common corner of a_, the corner of b_
 };
 
 }  // namespace tegl::detail

@@ -20,7 +20,7 @@ Times<N> sum_of(Times<N> a, const Times<N>& b, std::int32_t factor = 1) noexcept
   return a;
 }
 
-/// Sets of vertices with the difference of each vertex's multiples from those of its root.
+/// Sets of vertices, with the difference between the multiples of each vertex and of its root.
 template <int N>
 class MovedSets {
  public:
@@ -46,7 +46,7 @@ class MovedSets {
     return root;
   }
   [[nodiscard]] const Times<N>& times(Index v) const noexcept { return times_[v]; }
-  /// Sets the multiples of w to those of v plus `more`. Returns whether that agrees with all joins before.
+  /// Sets the multiples of w to the multiples of v plus `more`. Returns whether that agrees with all joins before.
   bool join(Index v, Index w, const Times<N>& more) noexcept {
     const Index a = find(v), b = find(w);
     const Times<N> apart = sum_of<N>(sum_of<N>(times_[v], more), times_[w], -1);

@@ -41,7 +41,7 @@ class CurveLines {
   /// weighted by their variance there.
   void add_straight_curve(float weight) noexcept;
   void prepare(std::size_t count);
-  /// For the 64 steps from `first` on: whether their axis is not that of step `first`.
+  /// For the 64 steps from `first` on: whether their axis differs from the axis of step `first`.
   [[nodiscard]] Word turns(std::size_t first) const noexcept {
     const std::size_t w = first / kWordBits, shift = first % kWordBits;
     Word bits = vertical_[w] >> shift;

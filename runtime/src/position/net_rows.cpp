@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
 namespace HWY_NAMESPACE {
 
-/// Bits of the word w of a row, moved by `shift` samples: bit i is that of sample i + shift.
+/// Bits of the word w of a row, moved by `shift` samples: bit i belongs to sample i + shift.
 template <class Bits>
 HWY_INLINE Word shifted(const Bits& bits, std::size_t w, std::size_t words, int shift) {
   const Word here = bits(w);

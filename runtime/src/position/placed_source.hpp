@@ -77,7 +77,7 @@ struct LayerEdges {
   [[nodiscard]] SampleIndex<N> start(std::size_t i) const noexcept {
     return rows.index(k, static_cast<std::size_t>(row[i]), edges.at[i]);
   }
-  /// Number of the row among those of all layers.
+  /// Number of the row among the rows of all layers.
   [[nodiscard]] std::size_t row_of_all(std::size_t i) const noexcept {
     return k * rows.size() + static_cast<std::size_t>(row[i]);
   }

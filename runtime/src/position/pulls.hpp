@@ -132,7 +132,7 @@ class PullsInLayer {
   const std::byte* bits_;               ///< a word before the first row of the layer
   SampleIndex<N> inner_{};              ///< samples along each axis without those on the border
   std::array<std::size_t, N> steps_{};  ///< bytes to the neighbouring row
-  std::size_t to_upper_;                ///< bytes from the row of the lower ends to that of the upper ends
+  std::size_t to_upper_;                ///< bytes from the row of the lower ends to the row of the upper ends
 };
 
 }  // namespace tegl::detail

@@ -17,7 +17,7 @@
 
 namespace tegl::detail {
 
-/// Unsigned integer type whose order is that of the values. Algorithms on ranges are instantiated for four key types
+/// Unsigned integer type with the order of the values. Algorithms on ranges are instantiated for four key types
 /// instead of seven value types.
 template <Value T>
 using KeyOf = std::conditional_t<sizeof(T) == 1, std::uint8_t,

@@ -103,7 +103,7 @@ class Ownership {
   }
 
   /// Replaces owners of i that were given up, if is_gone(owner), by their own owners, which are not gone. The parts of
-  /// i then follow those of the tile resolved before. `level`, `end`: the range of i.
+  /// i then follow the ranges of the tile resolved before. `level`, `end`: the range of i.
   template <class IsGone>
   void resolve(std::uint32_t i, Key level, Key end, const IsGone& is_gone) {
     const auto first = static_cast<Index>(parts_.size());

@@ -610,7 +610,7 @@ class BlockTrees {
   std::vector<Key> low_, high_;        ///< see RowOfLinks
 };
 
-/// The regions of all tiles. Blocks of a group are built at the same time; the result is that of building them one
+/// The regions of all tiles. Blocks of a group are built at the same time; the result is as if they were built one
 /// after the other.
 template <class Key>
 Regions<Key> make_first_regions(const RangeMap<Key>& map, const Widths<Key>& widths, Neighbourhood neighbourhood,

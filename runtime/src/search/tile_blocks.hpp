@@ -36,7 +36,7 @@ class BlockGrid {
   /// A tile in the margin of a box, which belongs to an earlier block.
   struct Earlier {
     std::uint32_t tile;
-    std::size_t blocks_back;  ///< number of the block minus that of the earlier one
+    std::size_t blocks_back;  ///< number of the block minus the number of the earlier one
   };
 
   /// `face_detours`: whether neighbours across faces have detours.

@@ -21,7 +21,7 @@ enum class Flatness : std::uint8_t { none, simplex, border };
 struct SweepNode {
   Index vertex = 0;
   double time = 0;
-  double reported = 0;  ///< `time`, or that of more vertices if it differs by rounding only
+  double reported = 0;  ///< `time`, or the time of more vertices if it differs by rounding only
   std::int64_t euler_change = 0;
   bool at_border = false;
   Flatness flatness = Flatness::none;

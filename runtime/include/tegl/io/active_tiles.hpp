@@ -19,7 +19,7 @@ template <int N>
 requires DimensionBetween<N, 2, 5>
 void write_active_tiles(const ActiveTiles<N>& active, const std::filesystem::path& path, const WorkOptions& work = {});
 
-/// Reads an index and verifies that it belongs to the image. Errors, naming the file: FileNotFound, and those of
+/// Reads an index and verifies that it belongs to the image. Errors, naming the file: FileNotFound, and all of
 /// load_active_tiles.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
