@@ -64,12 +64,24 @@ std::vector<double> coordinates(std::size_t n, int axis, int axes) {
   return values;
 }
 
-/// The first value of each line of 64 bytes that the vertices of a contour on a unit grid need of an array with a value
-/// per sample, in the order of the vertices.
-std::vector<const double*> needed_lines(const Contour<3, double>& contour, std::size_t n,
-                                        const std::vector<double>& values) {
-  std::vector<const double*> lines;
-  std::vector<bool> is_needed(values.size() / 8 + 1);
+/// Curved coordinates of all axes, in arrays along `axes` axes; `rounded`: to float.
+std::vector<CurvedAxis> curved_axes(std::size_t n, int axes, bool rounded) {
+  std::vector<CurvedAxis> curved;
+  for (int axis = 0; axis < axes; ++axis) {
+    curved.push_back({axis, (1u << axes) - 1, coordinates(n, axis, axes)});
+    for (double& x : curved.back().values) x = rounded ? static_cast<double>(static_cast<float>(x)) : x;
+  }
+  return curved;
+}
+
+/// The first number of each line of 64 bytes that the vertices of a contour on a unit grid need of an array with
+/// `bytes` bytes per sample, in the order of the vertices.
+template <class T>
+std::vector<const T*> needed_lines(const Contour<3, double>& contour, std::size_t n, const T* numbers,
+                                   std::size_t bytes) {
+  const std::size_t samples_per_line = 64 / bytes, numbers_per_line = 64 / sizeof(T);
+  std::vector<const T*> lines;
+  std::vector<bool> is_needed(n * n * n / samples_per_line + 1);
   for (const auto& vertex : contour.vertices) {
     std::size_t first = 0, second = 0;
     for (std::size_t a = 3; a-- > 0;) {
@@ -77,21 +89,23 @@ std::vector<const double*> needed_lines(const Contour<3, double>& contour, std::
       second = second * n + static_cast<std::size_t>(std::ceil(vertex[a]));
     }
     for (const std::size_t at : {first, second}) {
-      if (is_needed[at / 8]) continue;
-      is_needed[at / 8] = true;
-      lines.push_back(values.data() + at / 8 * 8);
+      const std::size_t line = at / samples_per_line;
+      if (is_needed[line]) continue;
+      is_needed[line] = true;
+      lines.push_back(numbers + line * numbers_per_line);
     }
   }
   return lines;
 }
 
 /// Reads a value of each of the lines, which are requested ahead.
-double read_lines(const std::vector<const double*>& lines) {
+template <class T>
+double read_lines(const std::vector<const T*>& lines) {
   constexpr std::size_t kAhead = 24;
   double sum = 0.0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     __builtin_prefetch(lines[std::min(i + kAhead, lines.size() - 1)]);
-    sum += *lines[i];
+    sum += static_cast<double>(*lines[i]);
   }
   return sum;
 }
@@ -110,37 +124,52 @@ int measure_curved(std::size_t n, int runs) {
   const Grid<3> grid = Grid<3>::unit({n, n, n});
   const std::vector<float> values = gyroid(n, 1.0, 26.0);
   const Image<float, 3> image(values.data(), grid);
-  const std::vector<double> x2 = coordinates(n, 0, 2), y2 = coordinates(n, 1, 2);
-  const std::array<std::vector<double>, 3> of_all = {coordinates(n, 0, 3), coordinates(n, 1, 3), coordinates(n, 2, 3)};
-  const std::vector<CurvedAxis> two = {{0, 0b011, x2}, {1, 0b011, y2}};
-  const std::vector<CurvedAxis> three = {{0, 0b111, of_all[0]}, {1, 0b111, of_all[1]}, {2, 0b111, of_all[2]}};
-  std::array<std::vector<const double*>, 3> lines;
+  const std::vector<CurvedAxis> two = curved_axes(n, 2, false), three = curved_axes(n, 3, false);
+  const std::vector<CurvedAxis> two_by_points = by_points(curved_axes(n, 2, true), 1);
+  const std::vector<CurvedAxis> rounded = curved_axes(n, 3, true);
+  const std::vector<CurvedAxis> floats = by_points(rounded, 1), doubles = by_points(three, 1);
   const Contour<3, double> plain = extract<double>(image, 0.01, options);
-  for (std::size_t a = 0; a < 3; ++a) lines[a] = needed_lines(plain, n, of_all[a]);
+  std::array<std::vector<const double*>, 3> lines;
+  for (std::size_t a = 0; a < 3; ++a) lines[a] = needed_lines(plain, n, three[a].values.data(), sizeof(double));
+  const auto float_lines = needed_lines(plain, n, floats[0].points.floats(), 4 * sizeof(float));
+  const auto double_lines = needed_lines(plain, n, doubles[0].points.doubles(), 4 * sizeof(double));
+  const auto curved = [&](const std::vector<CurvedAxis>& axes) {
+    return extract_curved(image, axes, 0.01, options).vertices.size();
+  };
   const auto periodic = [&](std::vector<int> axes) {
     return extract_periodic(image, sample_periods<3>(grid, axes), 0.01, options).vertices.size();
   };
-  std::vector<Grids> cases = {
-      {"plain", [&] { return extract(image, 0.01, options).vertices.size(); }},
-      {"two coordinates in 2D arrays", [&] { return extract_curved(image, two, 0.01, options).vertices.size(); }},
-      {"three coordinates in 3D arrays", [&] { return extract_curved(image, three, 0.01, options).vertices.size(); }},
-      {"reading the lines of the three arrays once",
-       [&] {
-         double sum = 0.0;
-         for (const auto& of_axis : lines) sum += read_lines(of_axis);
-         return std::isfinite(sum) ? plain.vertices.size() : 0;
-       }},
-      {"last axis periodic", [&] { return periodic({2}); }},
-      {"first axis periodic", [&] { return periodic({0}); }},
-      {"all axes periodic", [&] {
-         return periodic({0, 1, 2});
-       }}};
-  for (int run = 0; run <= runs; ++run)  // the first is a rehearsal
-    for (Grids& each : cases) {
-      const double start = bench::worked_seconds();
-      each.vertices = each.run();
-      if (run > 0) each.seconds.push_back(bench::worked_seconds() - start);
-    }
+  std::vector<Grids> cases = {{"plain", [&] { return extract(image, 0.01, options).vertices.size(); }},
+                              {"two coordinates in 2D arrays", [&] { return curved(two); }},
+                              {"two, by points (float)", [&] { return curved(two_by_points); }},
+                              {"three, by points (float)", [&] { return curved(floats); }},
+                              {"three, by points (double)", [&] { return curved(doubles); }},
+                              {"three coordinates in 3D arrays", [&] { return curved(three); }},
+                              {"reading the lines of the three arrays once",
+                               [&] {
+                                 double sum = 0.0;
+                                 for (const auto& of_axis : lines) sum += read_lines(of_axis);
+                                 return std::isfinite(sum) ? plain.vertices.size() : 0;
+                               }},
+                              {"reading the lines of the points (float) once",
+                               [&] { return std::isfinite(read_lines(float_lines)) ? plain.vertices.size() : 0; }},
+                              {"reading the lines of the points (double) once",
+                               [&] { return std::isfinite(read_lines(double_lines)) ? plain.vertices.size() : 0; }},
+                              {"last axis periodic", [&] { return periodic({2}); }},
+                              {"first axis periodic", [&] { return periodic({0}); }},
+                              {"all axes periodic", [&] {
+                                 return periodic({0, 1, 2});
+                               }}};
+  const auto measure = [&](Grids& each, bool is_rehearsal) {
+    const double start = bench::worked_seconds();
+    each.vertices = each.run();
+    if (!is_rehearsal) each.seconds.push_back(bench::worked_seconds() - start);
+  };
+  for (int run = 0; run <= runs; ++run)
+    for (Grids& each : cases) measure(each, run == 0);
+  // apart, as the contour after it would take longer
+  cases.push_back({"storing three arrays by points (float)", [&] { return by_points(rounded, 1)[0].size(); }});
+  for (int run = 0; run <= runs; ++run) measure(cases.back(), run == 0);
   for (Grids& each : cases) std::sort(each.seconds.begin(), each.seconds.end());
   const auto median = [](const Grids& of) { return of.seconds[of.seconds.size() / 2]; };
   std::printf("| %zu^3 samples | vertices | median, ms | minimum, ms | median by the plain one | minimum by it |\n", n);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tegl/curved_points.hpp"
 #include "tegl/dimensions.hpp"
 #include "tegl/error.hpp"
 #include "tegl/vector.hpp"
@@ -90,9 +91,19 @@ struct CurvedAxis {
   unsigned along = 0;  ///< bit a: the coordinate differs along axis a of the image; bit `axis` is set
   /// A coordinate for each index of the axes in `along`, the first of these axes fastest. NaN or infinite: unknown.
   std::vector<double> values = {};
-  std::string name = {};  ///< of the coordinate, such as "lon"; empty: as the image's axis
-  std::string unit = {};  ///< of the coordinate; empty: as the image's axis
-  bool operator==(const CurvedAxis&) const = default;  ///< equal if all members are
+  std::string name = {};     ///< of the coordinate, such as "lon"; empty: as the image's axis
+  std::string unit = {};     ///< of the coordinate; empty: as the image's axis
+  CurvedPoints points = {};  ///< has the coordinates if `values` is empty, in the same order (`by_points`)
+  unsigned column = 0;       ///< of `points`
+
+  /// Number of coordinates.
+  [[nodiscard]] std::size_t size() const noexcept { return values.empty() ? points.size() : values.size(); }
+  /// Coordinate i < size().
+  [[nodiscard]] double operator[](std::size_t i) const noexcept {
+    return values.empty() ? points(i, column) : values[i];
+  }
+  /// Equal if the axes, names, units and all coordinates are, however they are stored. NaN equals NaN.
+  bool operator==(const CurvedAxis& other) const;
 };
 
 }  // namespace tegl

@@ -12,6 +12,7 @@
 #include "tegl/components.hpp"
 #include "tegl/contour.hpp"
 #include "tegl/curved.hpp"
+#include "tegl/curved_points.hpp"
 #include "tegl/deviation.hpp"
 #include "tegl/dimensions.hpp"
 #include "tegl/elements.hpp"

@@ -26,6 +26,13 @@
 namespace tegl {
 namespace {
 
+template <int N, class Real>
+std::array<double, N> widened(const Real* point) noexcept {
+  std::array<double, N> result;
+  std::copy_n(point, N, result.begin());
+  return result;
+}
+
 /// Moves vertices and normals.
 template <int N>
 class Mover {
@@ -64,20 +71,21 @@ class Mover {
       return;
     }
     block.inside = 0;
-    for (std::size_t i = 0; i < block.count; ++i) map_.set_edge(i, place_of(widened(points + i * N)), block);
+    for (std::size_t i = 0; i < block.count; ++i) map_.set_edge(i, place_of(widened<N>(points + i * N)), block);
   }
   /// Starts to load coordinates at the edges of a block.
   void request(const detail::CurvedBlock& block) const noexcept { map_.request(block); }
-  /// Computes the curved coordinates of the points of a block, NaN where they are unknown; the others of `moved`
-  /// remain. Meanwhile starts to load the same of `next`.
+  /// Sets the curved coordinates of the points of a block in `moved`, NaN where they are unknown. Meanwhile starts to
+  /// load the coordinates of `next`. Returns whether all are known; false is possible although they are.
   template <class Real, class Moved>
-  void move(const Real* points, const detail::CurvedBlock& block, const detail::CurvedBlock& next,
-            detail::CurvedBlock::Points<Moved>& moved) const noexcept {
-    map_.set_on_edges(block, next, moved.data());
+  bool move(const Real* points, const detail::CurvedBlock& block, const detail::CurvedBlock& next,
+            Moved* moved) const noexcept {
+    bool known = map_.set_on_edges(block, next, moved);
     for (std::uint64_t rest = block.inside; rest != 0; rest &= rest - 1) {
       const std::size_t i = N * static_cast<std::size_t>(std::countr_zero(rest));
-      map_.set_inside(place_of(widened(points + i)), moved.data() + i);
+      known = map_.set_inside(place_of(widened<N>(points + i)), moved + i) && known;
     }
+    return known;
   }
 
   /// The normal in space of one on the index grid: the gradient g becomes the solution x of J^T x = g.
@@ -101,13 +109,6 @@ class Mover {
   }
 
  private:
-  template <class Real>
-  [[nodiscard]] static std::array<double, N> widened(const Real* point) noexcept {
-    std::array<double, N> result;
-    std::copy_n(point, N, result.begin());
-    return result;
-  }
-
   /// The step of the index grid along an axis.
   [[nodiscard]] double step_at(int a, const detail::CellPlace<N>& place) const noexcept {
     const Axis& axis = indices_.axes[a];
@@ -127,7 +128,7 @@ class Mover {
 template <class Real, int N>
 std::size_t first_unknown(const Mover<N>& mover, const Real* points, const detail::CurvedBlock& block) noexcept {
   detail::CurvedBlock::Points<double> moved{};  // not rounded to Real, which may be infinite
-  mover.move(points, block, {}, moved);
+  mover.move(points, block, {}, moved.data());
   for (std::size_t i = 0; i < block.count; ++i)
     for (int a = 0; a < N; ++a)
       if ((mover.moved() >> a & 1u) != 0 && !std::isfinite(moved[N * i + static_cast<std::size_t>(a)])) return i;
@@ -149,16 +150,15 @@ template <class Real, int N>
 void move_contour(const Mover<N>& mover, std::span<const CurvedAxis> curved, const WorkOptions& work,
                   Contour<N, Real>& contour) {
   const std::size_t vertices = contour.vertices.size();
-  const bool moves_all = mover.moved() == (1u << N) - 1;
   // The first vertex without a place keeps its indices, for the message.
   std::atomic<std::size_t> unknown{vertices};
   detail::for_each_part(vertices, work.threads, work.progress, [&](std::size_t from, std::size_t to) {
-    // While one block is moved, the coordinates of the next one are requested, as memory is slow.
-    constexpr std::size_t kMost = detail::CurvedBlock::kMost;
-    std::array<detail::CurvedBlock, 2> blocks;
-    detail::CurvedBlock::Points<Real> moved{}, rest{};
+    // While one block is moved, the coordinates of a later one are requested, as memory is slow.
+    constexpr std::size_t kMost = detail::CurvedBlock::kMost, kAhead = 2;
+    std::array<detail::CurvedBlock, kAhead + 1> blocks;
+    detail::CurvedBlock::Points<Real> unmoved{}, rest{};
     const auto find_edges = [&](std::size_t first) -> detail::CurvedBlock& {
-      detail::CurvedBlock& block = blocks[first / kMost % 2];
+      detail::CurvedBlock& block = blocks[(first - from) / kMost % blocks.size()];
       block.count = first < to ? std::min(to - first, kMost) : 0;
       if (block.count == 0) return block;
       const Real* points = contour.vertices[first].data();
@@ -166,23 +166,22 @@ void move_contour(const Mover<N>& mover, std::span<const CurvedAxis> curved, con
       mover.find_edges(points, block);
       return block;
     };
-    mover.request(find_edges(from));
+    for (std::size_t k = 0; k < kAhead; ++k) mover.request(find_edges(from + k * kMost));
     for (std::size_t first = from; first < to; first += kMost) {
-      const detail::CurvedBlock& block = blocks[first / kMost % 2];
+      const detail::CurvedBlock& block = blocks[(first - from) / kMost % blocks.size()];
       Real* const points = contour.vertices[first].data();
-      if (!moves_all) std::copy_n(points, N * block.count, moved.begin());
-      mover.move(points, block, find_edges(first + kMost), moved);
-      if (!detail::are_finite(moved))
-        if (const std::size_t i = first_unknown(mover, points, block); i < block.count) {
+      std::copy_n(points, N * block.count, unmoved.begin());
+      if (!mover.move(unmoved.data(), block, find_edges(first + kAhead * kMost), points))
+        if (const std::size_t i = first_unknown(mover, unmoved.data(), block); i < block.count) {
+          std::copy_n(unmoved.begin(), N * block.count, points);
           detail::lower_to(unknown, first + i);
           continue;
         }
-      for (std::size_t v = first; v < first + block.count && !contour.normals.empty(); ++v) {
-        const auto normal =
-            mover.turned(detail::widened_point<N>(contour.vertices[v]), detail::widened_point<N>(contour.normals[v]));
-        for (int a = 0; a < N; ++a) contour.normals[v][a] = static_cast<Real>(normal[a]);
+      for (std::size_t i = 0; i < block.count && !contour.normals.empty(); ++i) {
+        auto& normal = contour.normals[first + i];
+        const auto turned = mover.turned(widened<N>(unmoved.data() + N * i), detail::widened_point<N>(normal));
+        for (int a = 0; a < N; ++a) normal[a] = static_cast<Real>(turned[a]);
       }
-      std::copy_n(moved.begin(), N * block.count, points);
     }
   });
   if (unknown < vertices) throw_unknown<N>(mover, detail::widened_point<N>(contour.vertices[unknown]));
@@ -244,12 +243,12 @@ requires DimensionBetween<N, 2, 4> GridFolds<N> find_folds(const Grid<N>& grid, 
   return folds;
 }
 
+namespace {
+
+/// As index_grid; `step`: of the first curved axis.
 template <int N>
-requires DimensionBetween<N, 2, 4> Grid<N> index_grid(const Grid<N>& grid, std::span<const CurvedAxis> curved) {
-  detail::require_curved<N>(grid, curved);
-  if (curved.empty()) return grid;
+Grid<N> with_indices(const Grid<N>& grid, std::span<const CurvedAxis> curved, double step) {
   Grid<N> result = grid;
-  double step = detail::CurvedMap<N>(grid, curved).main_orientation();
   for (const CurvedAxis& one : curved) {
     const Axis& own = grid.axes[one.axis];
     Axis axis = Axis::uniform(own.size(), 0.0, std::exchange(step, 1.0));
@@ -260,12 +259,33 @@ requires DimensionBetween<N, 2, 4> Grid<N> index_grid(const Grid<N>& grid, std::
   return result;
 }
 
+/// The grid of a contour's indices. The sign of the first curved axis's step is that of its vertices' coordinates,
+/// which are 0 or have the same sign: finding it by the grid's orientation would read memory.
+template <int N, class Real>
+Grid<N> index_grid_of(const Contour<N, Real>& contour, const Grid<N>& grid, std::span<const CurvedAxis> curved) {
+  detail::require_curved<N>(grid, curved);
+  if (curved.empty()) return grid;
+  const auto axis = static_cast<std::size_t>(curved.front().axis);
+  const auto has_sign = [&](const auto& vertex) { return vertex[axis] != 0; };
+  const auto found = std::find_if(contour.vertices.begin(), contour.vertices.end(), has_sign);
+  return with_indices(grid, curved, found != contour.vertices.end() && (*found)[axis] < 0 ? -1.0 : 1.0);
+}
+
+}  // namespace
+
+template <int N>
+requires DimensionBetween<N, 2, 4> Grid<N> index_grid(const Grid<N>& grid, std::span<const CurvedAxis> curved) {
+  detail::require_curved<N>(grid, curved);
+  if (curved.empty()) return grid;
+  return with_indices(grid, curved, detail::CurvedMap<N>(grid, curved).main_orientation());
+}
+
 template <Coordinate Real, int N>
 requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Real> contour, const Grid<N>& grid,
                                                                    std::span<const CurvedAxis> curved,
                                                                    const WorkOptions& work,
                                                                    const CurvedSeams<N>& seams) {
-  Grid<N> indices = index_grid<N>(grid, curved);
+  Grid<N> indices = index_grid_of(contour, grid, curved);
   if (seams.empty()) {
     detail::require_unwrapped(contour, "on_curved_grid");
     move_contour<Real, N>(Mover<N>(grid, curved, std::move(indices), {}), curved, work, contour);

@@ -5,6 +5,8 @@
 #include "curved/curved_block.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "curved/curved_block.cpp"
@@ -12,6 +14,7 @@
 // This include must precede Highway's own headers.
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
+#include "image/vectors.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
@@ -85,8 +88,84 @@ void all_ends(const Real* points, const IndexSteps& steps, std::span<const Curve
   }
 }
 
+using FloatTag = hn::CappedTag<float, 16>;
+using FloatVector = hn::Vec<FloatTag>;
+using NumberTag = hn::RebindToSigned<FloatTag>;
+using NumberVector = hn::Vec<NumberTag>;
+
+HWY_INLINE void store_longer(NumberVector v, std::int64_t* out) {
+#if HWY_TARGET == HWY_SCALAR
+  *out = hn::GetLane(v);
+#else
+  const hn::RepartitionToWide<NumberTag> d;
+  const hn::Half<NumberTag> half;
+  hn::StoreU(hn::PromoteTo(d, hn::LowerHalf(half, v)), d, out);
+  hn::StoreU(hn::PromoteTo(d, hn::UpperHalf(half, v)), d, out + hn::Lanes(d));
+#endif
+}
+HWY_INLINE void store_longer(FloatVector v, double* out) {
+#if HWY_TARGET == HWY_SCALAR
+  *out = static_cast<double>(hn::GetLane(v));
+#else
+  const hn::RepartitionToWide<FloatTag> d;
+  const hn::Half<FloatTag> half;
+  hn::StoreU(hn::PromoteTo(d, hn::LowerHalf(half, v)), d, out);
+  hn::StoreU(hn::PromoteTo(d, hn::UpperHalf(half, v)), d, out + hn::Lanes(d));
+#endif
+}
+
+/// As all_ends, for twice as many points at a time. All arrays must be counted by 32 bits.
+template <std::size_t Dim>
+void all_ends_of_floats(const float* points, const IndexSteps& steps, std::span<const CurvedArrays> arrays,
+                        CurvedBlock& block) {
+  const FloatTag d;
+  const NumberTag di;
+  const auto zero = hn::Zero(d);
+  block.inside = 0;
+  for (std::size_t i = 0; i < block.count; i += hn::Lanes(d)) {
+    std::array<FloatVector, Dim> index;
+    load_points(d, points + Dim * i, index);
+    NumberVector base[Dim];
+    hn::Mask<NumberTag> is_between[Dim];
+    auto share_of_edge = zero;
+    for (std::size_t a = 0; a < Dim; ++a) {
+      index[a] = hn::Max(hn::Mul(index[a], hn::Set(d, static_cast<float>(steps[a]))), zero);
+      const auto floor = hn::Floor(index[a]);
+      const auto share = hn::Sub(index[a], floor);
+      base[a] = hn::ConvertTo(di, floor);
+      is_between[a] = hn::RebindMask(di, hn::Ne(share, zero));
+      share_of_edge = hn::Add(share_of_edge, share);
+    }
+    auto any = is_between[0], several = hn::And(any, is_between[1]);
+    for (std::size_t a = 1; a < Dim; ++a) {
+      if (a > 1) several = hn::Or(several, hn::And(any, is_between[a]));
+      any = hn::Or(any, is_between[a]);
+    }
+    for (std::size_t k = 0; k < arrays.size(); ++k) {
+      auto at = hn::Zero(di), step = hn::Zero(di);
+      for (std::size_t a = 0; a < Dim; ++a) {
+        const auto stride = hn::Set(di, static_cast<std::int32_t>(arrays[k].strides[a]));
+        at = hn::Add(at, hn::Mul(base[a], stride));
+        step = hn::Add(step, hn::IfThenElseZero(is_between[a], stride));
+      }
+      store_longer(at, block.ends[k].first.data() + i);
+      store_longer(hn::Add(at, step), block.ends[k].second.data() + i);
+      const auto differs = hn::RebindMask(d, hn::Ne(step, hn::Zero(di)));
+      store_longer(hn::IfThenElseZero(differs, share_of_edge), block.ends[k].weight.data() + i);
+    }
+    if (hn::AllFalse(di, several)) continue;
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(di, several, bits);
+    block.inside |= (std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8) << i;
+  }
+}
+
 void ends_of_floats(const float* points, std::size_t dim, const IndexSteps& steps, std::span<const CurvedArrays> arrays,
                     CurvedBlock& block) {
+  if (std::all_of(arrays.begin(), arrays.end(), [](const CurvedArrays& each) { return each.fits_32_bits; }))
+    return dim == 2   ? all_ends_of_floats<2>(points, steps, arrays, block)
+           : dim == 3 ? all_ends_of_floats<3>(points, steps, arrays, block)
+                      : all_ends_of_floats<4>(points, steps, arrays, block);
   dim == 2   ? all_ends<2>(points, steps, arrays, block)
   : dim == 3 ? all_ends<3>(points, steps, arrays, block)
              : all_ends<4>(points, steps, arrays, block);
@@ -98,16 +177,70 @@ void ends_of_doubles(const double* points, std::size_t dim, const IndexSteps& st
              : all_ends<4>(points, steps, arrays, block);
 }
 
-template <class Real>
-bool finite(const CurvedBlock::Points<Real>& points) {
-  const hn::CappedTag<Real, 16> d;
+/// Sets all coordinates of points whose columns are consecutive axes, from `out` on. The same arithmetic as
+/// set_between. A sample's numbers never are in two cache lines.
+template <std::size_t Columns, class T, class Real>
+HWY_INLINE bool columns_between(const T* numbers, const CurvedBlock::Ends& ends, std::size_t count,
+                                const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* out) {
+  constexpr std::size_t kPitch = Columns == 2 ? 2 : 4;
+  const hn::CappedTag<double, kPitch> d;
+  const hn::Rebind<T, decltype(d)> stored;
+  const hn::Rebind<Real, decltype(d)> real;
+  const auto number = [&](const T* from) HWY_ATTR {
+    if constexpr (std::is_same_v<T, double>)
+      return hn::LoadU(d, from);
+    else
+      return hn::PromoteTo(d, hn::LoadU(stored, from));
+  };
   auto sum = hn::Zero(d);  // 0 times infinity or NaN is NaN
-  for (std::size_t i = 0; i < points.size(); i += hn::Lanes(d))
-    sum = hn::MulAdd(hn::Zero(d), hn::LoadU(d, points.data() + i), sum);
+  const auto set = [&](std::size_t i, Real* to) HWY_ATTR {
+    const T *const first = numbers + ends.first[i], *const second = numbers + ends.second[i];
+    const auto share = hn::Set(d, ends.weight[i]), rest = hn::Sub(hn::Set(d, 1.0), share);
+    for (std::size_t c = 0; c < kPitch; c += hn::Lanes(d)) {
+      const auto point = hn::Add(hn::Mul(rest, number(first + c)), hn::Mul(share, number(second + c)));
+      sum = hn::MulAdd(hn::Zero(d), point, sum);
+      if constexpr (std::is_same_v<Real, double>)
+        hn::StoreU(point, real, to + c);
+      else
+        hn::StoreU(hn::DemoteTo(real, point), real, to + c);
+    }
+  };
+  if (count == 0) return true;
+  // Three columns are stored as four: this changes the next point, which is set afterwards, except for the last one.
+  std::size_t i = 0;
+  for (const std::size_t end = std::min(count - 1, requested); i < end; ++i) {
+    hwy::Prefetch(numbers + next.first[i]);
+    hwy::Prefetch(numbers + next.second[i]);
+    set(i, out + dim * i);
+  }
+  for (; i < count - 1; ++i) set(i, out + dim * i);
+  Real last[kPitch];
+  set(i, last);
+  std::copy_n(last, Columns, out + dim * i);
+  for (; i < requested; ++i) {
+    hwy::Prefetch(numbers + next.first[i]);
+    hwy::Prefetch(numbers + next.second[i]);
+  }
   return hn::AllTrue(d, hn::Eq(sum, sum));
 }
-bool finite_floats(const CurvedBlock::Points<float>& points) { return finite(points); }
-bool finite_doubles(const CurvedBlock::Points<double>& points) { return finite(points); }
+
+template <class T, class Real>
+bool points_between(const T* numbers, std::size_t columns, const CurvedBlock::Ends& ends, std::size_t count,
+                    const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* out) {
+  return columns == 2   ? columns_between<2>(numbers, ends, count, next, requested, dim, out)
+         : columns == 3 ? columns_between<3>(numbers, ends, count, next, requested, dim, out)
+                        : columns_between<4>(numbers, ends, count, next, requested, dim, out);
+}
+#define TEGL_POINTS_BETWEEN(name, T, Real)                                                           \
+  bool name(const T* numbers, std::size_t columns, const CurvedBlock::Ends& ends, std::size_t count, \
+            const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* out) {      \
+    return points_between(numbers, columns, ends, count, next, requested, dim, out);                 \
+  }
+TEGL_POINTS_BETWEEN(floats_between_floats, float, float)
+TEGL_POINTS_BETWEEN(doubles_between_floats, float, double)
+TEGL_POINTS_BETWEEN(floats_between_doubles, double, float)
+TEGL_POINTS_BETWEEN(doubles_between_doubles, double, double)
+#undef TEGL_POINTS_BETWEEN
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tegl::detail
@@ -119,8 +252,10 @@ namespace tegl::detail {
 
 HWY_EXPORT(ends_of_floats);
 HWY_EXPORT(ends_of_doubles);
-HWY_EXPORT(finite_floats);
-HWY_EXPORT(finite_doubles);
+HWY_EXPORT(floats_between_floats);
+HWY_EXPORT(doubles_between_floats);
+HWY_EXPORT(floats_between_doubles);
+HWY_EXPORT(doubles_between_doubles);
 
 void find_ends(const float* points, std::size_t dim, const IndexSteps& steps, std::span<const CurvedArrays> arrays,
                CurvedBlock& block) noexcept {
@@ -131,37 +266,40 @@ void find_ends(const double* points, std::size_t dim, const IndexSteps& steps, s
   HWY_DYNAMIC_DISPATCH(ends_of_doubles)(points, dim, steps, arrays, block);
 }
 
-bool are_finite(const CurvedBlock::Points<float>& points) noexcept {
-  return HWY_DYNAMIC_DISPATCH(finite_floats)(points);
-}
-bool are_finite(const CurvedBlock::Points<double>& points) noexcept {
-  return HWY_DYNAMIC_DISPATCH(finite_doubles)(points);
-}
-
 void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept {
-  for (std::size_t i = 0; arrays.is_large && i < count; ++i)
-    for (std::size_t k = 0; k < arrays.count; ++k) {
-      hwy::Prefetch(arrays.values[k] + ends.first[i]);
-      hwy::Prefetch(arrays.values[k] + ends.second[i]);
+  const auto fetch = [&](const auto* numbers) {
+    for (std::size_t i = 0; i < count; ++i) {
+      hwy::Prefetch(numbers + ends.first[i]);
+      hwy::Prefetch(numbers + ends.second[i]);
     }
+  };
+  if (!arrays.is_large) return;
+  if (arrays.floats != nullptr) return fetch(arrays.floats);
+  if (arrays.doubles != nullptr) return fetch(arrays.doubles);
+  for (std::size_t k = 0; k < arrays.count; ++k) fetch(arrays.values[k]);
 }
 
-/// Sets the coordinates of `Count` arrays. Here, for the baseline: many processors load one by one faster than they
-/// gather, and results that go to memory once need no vectors.
-template <std::size_t Count, class Real>
-static void set_between(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
-                        const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* points) noexcept {
-  std::array<const double*, Count> values;
+/// Sets `Count` coordinates from numbers of their own or columns of points. Here, for the baseline: many processors
+/// load one by one faster than they gather, and results that go to memory once need no vectors.
+template <std::size_t Count, class T, class Real>
+static bool set_between(const CurvedArrays& arrays, const std::array<const T*, CurvedBlock::kMostAxes>& numbers,
+                        const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
+                        std::size_t requested, std::size_t dim, Real* points) noexcept {
+  std::array<const T*, Count> values;
   std::array<Real*, Count> out;
   for (std::size_t k = 0; k < Count; ++k) {
-    values[k] = arrays.values[k];
+    values[k] = numbers[k];
     out[k] = points + arrays.axis[k];
   }
+  std::array<double, Count> sums{};  // 0 times infinity or NaN is NaN
   const auto set = [&](std::size_t i) {
     const std::int64_t first = ends.first[i], second = ends.second[i];
     const double share = ends.weight[i], rest = 1.0 - share;
-    for (std::size_t k = 0; k < Count; ++k)
-      out[k][dim * i] = static_cast<Real>(rest * values[k][first] + share * values[k][second]);
+    for (std::size_t k = 0; k < Count; ++k) {
+      const double x = rest * static_cast<double>(values[k][first]) + share * static_cast<double>(values[k][second]);
+      sums[k] += 0.0 * x;
+      out[k][dim * i] = static_cast<Real>(x);
+    }
   };
   std::size_t i = 0;
   for (; i < std::min(count, requested); ++i) {
@@ -173,24 +311,63 @@ static void set_between(const CurvedArrays& arrays, const CurvedBlock::Ends& end
     set(i);
   }
   for (; i < count; ++i) set(i);
+  return std::accumulate(sums.begin(), sums.end(), 0.0) == 0.0;
 }
 
-template <class Real>
-static void set_coordinates(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
-                            const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim,
-                            Real* points) noexcept {
-  constexpr std::array kSet = {&set_between<1, Real>, &set_between<2, Real>, &set_between<3, Real>,
-                               &set_between<4, Real>};
-  kSet[arrays.count - 1](arrays, ends, count, next, arrays.is_large ? requested : 0, dim, points);
+template <class T, class Real>
+static bool set_coordinates(const CurvedArrays& arrays, const std::array<const T*, CurvedBlock::kMostAxes>& numbers,
+                            const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
+                            std::size_t requested, std::size_t dim, Real* points) noexcept {
+  constexpr std::array kSet = {&set_between<1, T, Real>, &set_between<2, T, Real>, &set_between<3, T, Real>,
+                               &set_between<4, T, Real>};
+  return kSet[arrays.count - 1](arrays, numbers, ends, count, next, requested, dim, points);
 }
 
-void interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
+/// Whether points_between sets the coordinates: all columns are needed, of consecutive axes, and the store of three
+/// columns as four overwrites no other coordinate of a point.
+static bool are_consecutive(const CurvedArrays& arrays, std::size_t dim) noexcept {
+  if (arrays.count < 2 || arrays.count != arrays.columns || (arrays.count == 3 && dim != 3)) return false;
+  for (std::size_t k = 0; k < arrays.count; ++k)
+    if (arrays.column[k] != arrays.axis[k] - arrays.axis[0] + arrays.column[0]) return false;
+  return true;
+}
+
+template <class Real, class T, class Vectors>
+static bool set_of_points(const T* numbers, const Vectors& by_vectors, const CurvedArrays& arrays,
+                          const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
+                          std::size_t requested, std::size_t dim, Real* points) noexcept {
+  if (are_consecutive(arrays, dim)) {
+    const std::size_t axis = arrays.axis[0] - arrays.column[0];
+    return by_vectors(numbers, arrays.columns, ends, count, next, requested, dim, points + axis);
+  }
+  std::array<const T*, CurvedBlock::kMostAxes> columns{};
+  for (std::size_t k = 0; k < arrays.count; ++k) columns[k] = numbers + arrays.column[k];
+  return set_coordinates(arrays, columns, ends, count, next, requested, dim, points);
+}
+
+template <class Real, class FromFloats, class FromDoubles>
+static bool set_all(const FromFloats& from_floats, const FromDoubles& from_doubles, const CurvedArrays& arrays,
+                    const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
+                    std::size_t requested, std::size_t dim, Real* points) noexcept {
+  if (!arrays.is_large) requested = 0;
+  if (arrays.floats != nullptr)
+    return set_of_points(arrays.floats, from_floats, arrays, ends, count, next, requested, dim, points);
+  if (arrays.doubles != nullptr)
+    return set_of_points(arrays.doubles, from_doubles, arrays, ends, count, next, requested, dim, points);
+  return set_coordinates(arrays, arrays.values, ends, count, next, requested, dim, points);
+}
+
+bool interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
                  const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, float* points) noexcept {
-  set_coordinates(arrays, ends, count, next, requested, dim, points);
+  return set_all([](auto&&... all) { return HWY_DYNAMIC_DISPATCH(floats_between_floats)(all...); },
+                 [](auto&&... all) { return HWY_DYNAMIC_DISPATCH(floats_between_doubles)(all...); }, arrays, ends,
+                 count, next, requested, dim, points);
 }
-void interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
+bool interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
                  const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, double* points) noexcept {
-  set_coordinates(arrays, ends, count, next, requested, dim, points);
+  return set_all([](auto&&... all) { return HWY_DYNAMIC_DISPATCH(doubles_between_floats)(all...); },
+                 [](auto&&... all) { return HWY_DYNAMIC_DISPATCH(doubles_between_doubles)(all...); }, arrays, ends,
+                 count, next, requested, dim, points);
 }
 
 }  // namespace tegl::detail

@@ -24,18 +24,25 @@ struct CurvedBlock {
     std::array<double, kMost> weight{};
   };
   std::size_t count = 0;
-  std::array<Ends, kMostAxes> ends{};  ///< by CurvedArrays
+  std::array<Ends, kMostAxes> ends{};  ///< by CurvedArrays, counted in numbers, in numbers
   std::uint64_t inside = 0;            ///< bit i: point i is not on an edge, or at its second end
 };
 
-/// Arrays of coordinates with the same axes.
+/// Coordinates of samples with the same axes: in arrays of their own, or columns of the same CurvedPoints.
 struct CurvedArrays {
   using Strides = std::array<std::size_t, CurvedBlock::kMostAxes>;
-  Strides strides{};      ///< distance of neighbours along each axis; 0 along axes that the arrays do not have
+  Strides strides{};      ///< in numbers, between neighbours along each axis; 0 along axes that the arrays do not have
   bool is_large = false;  ///< whether values do not stay in the nearest caches
-  std::size_t count = 0;
-  std::array<const double*, CurvedBlock::kMostAxes> values{};
-  std::array<std::size_t, CurvedBlock::kMostAxes> axis{};  ///< of each array's coordinates
+  bool fits_32_bits = false;                                   ///< whether all numbers are counted by std::int32_t
+  std::size_t count = 0;                                       ///< of coordinates
+  std::array<const double*, CurvedBlock::kMostAxes> values{};  ///< by coordinate, if in arrays of their own
+  std::array<std::size_t, CurvedBlock::kMostAxes> column{};    ///< by coordinate, of points
+  std::array<std::size_t, CurvedBlock::kMostAxes> axis{};      ///< of each coordinate
+  const float* floats = nullptr;                               ///< of points, if stored as float
+  const double* doubles = nullptr;                             ///< of points, if stored as double
+  std::size_t columns = 1, pitch = 1;
+
+  [[nodiscard]] bool are_points() const noexcept { return floats != nullptr || doubles != nullptr; }
 };
 
 /// Steps of indices by axis: 1 or -1, and 0 along axes without indices.
@@ -49,13 +56,11 @@ void find_ends(const double* points, std::size_t dim, const IndexSteps& steps, s
 /// Starts to load the values at `count` ends if the arrays are large.
 void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept;
 /// Sets coordinates of `count` points, with `dim` coordinates each, between the ends of their edges. Meanwhile requests
-/// the values at the first `requested` of the `next` ends: memory delivers only few at a time.
-void interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
+/// the values at the first `requested` of the `next` ends: memory delivers only few at a time. Returns whether all
+/// coordinates, before they are rounded to the points' type, are finite.
+bool interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
                  const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, float* points) noexcept;
-void interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
+bool interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,
                  const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, double* points) noexcept;
-/// Whether all of the coordinates are finite.
-bool are_finite(const CurvedBlock::Points<float>& points) noexcept;
-bool are_finite(const CurvedBlock::Points<double>& points) noexcept;
 
 }  // namespace tegl::detail

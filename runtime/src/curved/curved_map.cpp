@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include <fmt/format.h>
@@ -32,9 +33,12 @@ void require_curved(const Grid<N>& grid, std::span<const CurvedAxis> curved) {
     std::size_t samples = 1;
     for (int a = 0; a < N; ++a)
       if ((one.along >> a & 1u) != 0) samples *= grid.axes[a].size();
-    if (one.values.size() != samples)
-      fail(fmt::format("{} curved coordinates of axis {}; expected {}, one for each sample", one.values.size(),
-                       one.axis, samples));
+    if (one.size() != samples)
+      fail(fmt::format("{} curved coordinates of axis {}; expected {}, one for each sample", one.size(), one.axis,
+                       samples));
+    if (one.values.empty() && one.column >= one.points.columns())
+      fail(fmt::format("column {} of the points for axis {}; expected a number below {}", one.column, one.axis,
+                       one.points.columns()));
   }
 }
 
@@ -49,15 +53,31 @@ CurvedMap<N>::CurvedMap(const Grid<N>& grid, std::span<const CurvedAxis> curved)
       strides_[k][a] = stride;
       stride *= sizes_[a];
     }
-    CurvedArrays::Strides strides{};
-    std::copy(strides_[k].begin(), strides_[k].end(), strides.begin());
-    auto same = std::find_if(arrays_.begin(), arrays_.end(), [&](const auto& of) { return of.strides == strides; });
-    if (same == arrays_.end()) same = arrays_.insert(same, {.strides = strides});
-    constexpr std::size_t kLarge = std::size_t{1} << 17;
-    same->is_large = axes_[k].values.size() > kLarge;
-    same->values[same->count] = axes_[k].values.data();
-    same->axis[same->count++] = static_cast<std::size_t>(axes_[k].axis);
+    add_array(axes_[k], strides_[k]);
   }
+}
+
+template <int N>
+void CurvedMap<N>::add_array(const CurvedAxis& one, const SampleIndex& strides) {
+  CurvedArrays group{};
+  if (one.values.empty()) {
+    group.floats = one.points.floats();
+    group.doubles = one.points.doubles();
+    group.columns = one.points.columns();
+    group.pitch = one.points.pitch();
+  }
+  for (int a = 0; a < N; ++a) group.strides[a] = strides[a] * group.pitch;
+  auto same = std::find_if(arrays_.begin(), arrays_.end(), [&](const CurvedArrays& of) {
+    return of.strides == group.strides && of.floats == group.floats && of.doubles == group.doubles;
+  });
+  if (same == arrays_.end()) same = arrays_.insert(same, group);
+  constexpr std::size_t kLarge = std::size_t{1} << 20;  // bytes
+  const std::size_t numbers = one.size() * group.pitch;
+  same->is_large = numbers * (group.floats != nullptr ? sizeof(float) : sizeof(double)) > kLarge;
+  same->fits_32_bits = numbers <= std::numeric_limits<std::int32_t>::max();
+  same->values[same->count] = one.values.data();
+  same->column[same->count] = one.column;
+  same->axis[same->count++] = static_cast<std::size_t>(one.axis);
 }
 
 template <int N>
@@ -86,7 +106,7 @@ double CurvedMap<N>::orientation(const SampleIndex& cell, unsigned corner) const
 
 template <int N>
 double CurvedMap<N>::main_orientation() const {
-  constexpr std::size_t kSamples = 997;  // a prime, so that the cells are not all at the same place along an axis
+  constexpr std::size_t kSamples = 499;  // a prime, so that the cells are not all at the same place along an axis
   std::size_t cells = 1;
   for (int a = 0; a < N; ++a) cells *= (along_ >> a & 1u) != 0 ? std::max<std::size_t>(sizes_[a], 2) - 1 : 1;
   const std::size_t step = std::max<std::size_t>(1, cells / kSamples);
@@ -105,7 +125,7 @@ double CurvedMap<N>::main_orientation() const {
     if (is_cell) some.push_back(cell);
   }
   // Far apart in memory, so they are requested ahead.
-  constexpr std::size_t kAhead = 8;
+  constexpr std::size_t kAhead = 24;
   double sum = 0.0;
   for (std::size_t i = 0; i < some.size(); ++i) {
     if (i + kAhead < some.size()) request_corner(some[i + kAhead]);
@@ -118,10 +138,16 @@ double CurvedMap<N>::main_orientation() const {
 template <int N>
 void CurvedMap<N>::request_corner(const SampleIndex& cell) const noexcept {
   for (std::size_t k = 0; k < axes_.size(); ++k) {
-    const double* here = axes_[k].values.data();
+    const CurvedAxis& one = axes_[k];
+    std::size_t here = 0;
     for (int a = 0; a < N; ++a) here += cell[a] * strides_[k][a];
-    hwy::Prefetch(here);
-    for (int a = 0; a < N; ++a) hwy::Prefetch(here + strides_[k][a]);
+    const auto fetch = [&](std::size_t at) {
+      if (!one.values.empty()) return hwy::Prefetch(one.values.data() + at);
+      if (one.points.floats() != nullptr) return hwy::Prefetch(one.points.floats() + one.points.pitch() * at);
+      hwy::Prefetch(one.points.doubles() + one.points.pitch() * at);
+    };
+    fetch(here);
+    for (int a = 0; a < N; ++a) fetch(here + strides_[k][a]);
   }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -55,15 +56,24 @@ class CurvedMap {
   /// Starts to load coordinates at the edges of a block.
   void request(const CurvedBlock& block) const noexcept;
   /// Sets the curved coordinates of points on edges; of those inside cells `set_inside`. Meanwhile starts to load the
-  /// coordinates of `next`, which may have no points.
+  /// coordinates of `next`, which may have no points. Returns whether all of these coordinates are finite.
   template <class Real>
-  void set_on_edges(const CurvedBlock& block, const CurvedBlock& next, Real* points) const noexcept {
+  bool set_on_edges(const CurvedBlock& block, const CurvedBlock& next, Real* points) const noexcept {
+    bool finite = true;
     for (std::size_t k = 0; k < arrays_.size(); ++k)
-      interpolate(arrays_[k], block.ends[k], block.count, next.ends[k], next.count, N, points);
+      finite = interpolate(arrays_[k], block.ends[k], block.count, next.ends[k], next.count, N, points) && finite;
+    return finite;
   }
+  /// Sets the curved coordinates of a point. Returns whether they are finite.
   template <class Real>
-  void set_inside(const CellPlace<N>& place, Real* point) const noexcept {
-    for (std::size_t k = 0; k < axes_.size(); ++k) point[axes_[k].axis] = static_cast<Real>(inside(k, place));
+  bool set_inside(const CellPlace<N>& place, Real* point) const noexcept {
+    bool finite = true;
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
+      const double x = inside(k, place);
+      finite = finite && std::isfinite(x);
+      point[axes_[k].axis] = static_cast<Real>(x);
+    }
+    return finite;
   }
   /// The derivatives by index, derivatives[c][a], of coordinate c along axis a, at a place: central differences between
   /// samples, interpolated. Only those of curved coordinates are set, the others are 0.
@@ -73,8 +83,10 @@ class CurvedMap {
   [[nodiscard]] double value(std::size_t k, const SampleIndex& index) const noexcept {
     std::size_t at = 0;
     for (int a = 0; a < N; ++a) at += index[a] * strides_[k][a];
-    return axes_[k].values[at];
+    return axes_[k][at];
   }
+  /// Adds an array with these strides to `arrays_`.
+  void add_array(const CurvedAxis& one, const SampleIndex& strides);
   /// Starts to load the coordinates that orientation(cell, 0) reads.
   void request_corner(const SampleIndex& cell) const noexcept;
   /// The coordinate of axes_[k] at a place between any number of samples.
@@ -82,7 +94,7 @@ class CurvedMap {
   [[nodiscard]] double difference(std::size_t k, const SampleIndex& index, int a) const noexcept;
 
   std::span<const CurvedAxis> axes_;
-  std::vector<CurvedArrays> arrays_;                     ///< those of axes_, by the axes that they have
+  std::vector<CurvedArrays> arrays_;                     ///< those of axes_, by the axes that they have, and by memory
   std::array<std::array<std::size_t, N>, N> strides_{};  ///< of the arrays; 0 along other axes
   SampleIndex sizes_;
   unsigned curved_ = 0;

@@ -59,6 +59,27 @@ void require_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved, std:
   }
 }
 
+/// Continues coordinates that are stored by points across a seam; those that are stored together, together.
+template <int N>
+void continue_points(const CurvedSeam<N>& seam, LongerCurved<N>& longer) {
+  std::vector<std::pair<CurvedPoints, CurvedPoints>> continued;
+  for (CurvedAxis& one : longer.curved) {
+    if ((one.along >> seam.axis & 1u) == 0 || !one.values.empty()) continue;
+    auto found = std::find_if(continued.begin(), continued.end(),
+                              [&](const auto& pair) { return pair.first.is_same_memory(one.points); });
+    if (found == continued.end()) {
+      std::array<double, CurvedPoints::kMostColumns> added{};
+      for (const CurvedAxis& other : longer.curved)
+        if (other.values.empty() && other.points.is_same_memory(one.points))
+          added[other.column] = seam.vector[other.axis];
+      const std::size_t row = size_along(one, longer.grid, 0, seam.axis);
+      const std::size_t block = row * longer.grid.axes[seam.axis].size();
+      found = continued.insert(found, {one.points, one.points.continued(row, block, added)});
+    }
+    one.points = found->second;
+  }
+}
+
 }  // namespace
 
 template <int N>
@@ -72,6 +93,7 @@ LongerCurved<N> longer_curved(const Grid<N>& grid, std::span<const CurvedAxis> c
       // slices across the axis are runs of `row` values, one run for each step along the axes behind
       const std::size_t row = size_along(one, longer.grid, 0, seam.axis);
       const std::size_t block = row * longer.grid.axes[seam.axis].size();
+      if (one.values.empty()) continue;
       std::vector<double> values;
       values.reserve(one.values.size() / block * (block + row));
       for (std::size_t first = 0; first < one.values.size(); first += block) {
@@ -81,6 +103,7 @@ LongerCurved<N> longer_curved(const Grid<N>& grid, std::span<const CurvedAxis> c
       }
       one.values = std::move(values);
     }
+    continue_points(seam, longer);
     Axis& axis = longer.grid.axes[seam.axis];
     if (is_axis_curved(curved, seam.axis)) {
       Axis indices = Axis::uniform(axis.size() + 1);
@@ -116,7 +139,7 @@ std::vector<Period<N>> periods_of_seams(const Grid<N>& grid, std::span<const Cur
       double least = std::numeric_limits<double>::infinity();
       const auto add = [&](double x) { least = std::isfinite(x) ? std::min(least, dual * x) : least; };
       for (const CurvedAxis& one : curved)
-        if (one.axis == c) std::for_each(one.values.begin(), one.values.end(), add);
+        for (std::size_t i = 0; one.axis == c && i < one.size(); ++i) add(one[i]);
       if (!is_axis_curved(curved, c))
         for (std::size_t i = 0; i < grid.axes[c].size(); ++i) add(grid.axes[c][i]);
       if (std::isfinite(least)) periods[p].start += least;
@@ -144,9 +167,9 @@ template <int N>
 double mean_growth(const Grid<N>& grid, const CurvedAxis& one, int a) {
   const std::size_t row = detail::size_along(one, grid, 0, a), block = row * grid.axes[a].size();
   double sum = 0.0, count = 0.0;
-  for (std::size_t first = 0; first < one.values.size(); first += block)
+  for (std::size_t first = 0; first < one.size(); first += block)
     for (std::size_t i = 0; i < row; ++i) {
-      const double step = one.values[first + block - row + i] - one.values[first + i];
+      const double step = one[first + block - row + i] - one[first + i];
       if (!std::isfinite(step)) continue;
       sum += step;
       ++count;
@@ -163,9 +186,9 @@ bool is_around(const Grid<N>& grid, const CurvedAxis& one, int a) {
   if (size < 3) return false;
   const std::size_t row = detail::size_along(one, grid, 0, a), block = row * size;
   bool any = false;
-  for (std::size_t first = 0; first < one.values.size(); first += block)
+  for (std::size_t first = 0; first < one.size(); first += block)
     for (std::size_t i = 0; i < row; ++i) {
-      const double growth = std::abs(one.values[first + block - row + i] - one.values[first + i]);
+      const double growth = std::abs(one[first + block - row + i] - one[first + i]);
       if (!std::isfinite(growth)) continue;
       const double step = growth / static_cast<double>(size - 1);
       if (!(std::abs(kTurn - growth - step) <= kOfAStep * step)) return false;

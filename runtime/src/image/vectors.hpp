@@ -89,7 +89,44 @@ HWY_INLINE void store_points(D d, const std::array<V, 3>& x, hwy::HWY_NAMESPACE:
   hwy::HWY_NAMESPACE::StoreInterleaved3(x[0], x[1], x[2], d, out);
 }
 
+// Loads of points: the first coordinates of as many as a register has lanes, the second ones, and so on.
+template <class D, class V>
+HWY_INLINE void load_points(D d, const hwy::HWY_NAMESPACE::TFromD<D>* from, std::array<V, 2>& x) {
+  hwy::HWY_NAMESPACE::LoadInterleaved2(d, from, x[0], x[1]);
+}
+template <class D, class V>
+HWY_INLINE void load_points(D d, const hwy::HWY_NAMESPACE::TFromD<D>* from, std::array<V, 3>& x) {
+  hwy::HWY_NAMESPACE::LoadInterleaved3(d, from, x[0], x[1], x[2]);
+}
+template <class D, class V>
+HWY_INLINE void load_points(D d, const hwy::HWY_NAMESPACE::TFromD<D>* from, std::array<V, 4>& x) {
+  hwy::HWY_NAMESPACE::LoadInterleaved4(d, from, x[0], x[1], x[2], x[3]);
+}
+
 #if HWY_TARGET <= HWY_AVX3
+
+/// The reverse of ThreeInterleaved: lanes of the first two registers (`xy`), then of the result and the third register.
+struct ThreeSeparated {
+  alignas(64) std::array<std::array<int, 16>, 3> xy{}, xyz{};
+  constexpr ThreeSeparated() {
+    for (int axis = 0; axis < 3; ++axis)
+      for (int point = 0; point < 16; ++point) {
+        const int at = 3 * point + axis;
+        xy[axis][point] = at < 32 ? at : 0;
+        xyz[axis][point] = at < 32 ? point : at - 16;
+      }
+  }
+};
+inline constexpr ThreeSeparated kThreeSeparated;
+
+HWY_INLINE void load_points(hwy::HWY_NAMESPACE::Full512<float> /*d*/, const float* from,
+                            std::array<hwy::HWY_NAMESPACE::Vec512<float>, 3>& x) {
+  const __m512 first = _mm512_loadu_ps(from), second = _mm512_loadu_ps(from + 16), third = _mm512_loadu_ps(from + 32);
+  for (std::size_t a = 0; a < 3; ++a) {
+    const __m512 both = _mm512_permutex2var_ps(first, _mm512_load_si512(kThreeSeparated.xy[a].data()), second);
+    x[a].raw = _mm512_permutex2var_ps(both, _mm512_load_si512(kThreeSeparated.xyz[a].data()), third);
+  }
+}
 
 /// Lanes of the three registers of points with coordinates x, y and z. Lanes of the second operand count from `Lanes`.
 /// First those of x and y are chosen (`xy`), then those of the result and of z (`xyz`).

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Curved grids whose coordinates are stored sample by sample: their contours are those on arrays of coordinates.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "errors.hpp"
+#include "tegl/curved.hpp"
+
+namespace tegl {
+namespace {
+
+using namespace test;
+
+/// Numbers from 0 to 1.
+template <int N>
+OwnedImage<double, N> noise(const std::array<std::size_t, N>& sizes) {
+  std::mt19937 random(23);
+  OwnedImage<double, N> image;
+  image.grid = Grid<N>::unit(sizes);
+  std::size_t count = 1;
+  for (const std::size_t size : sizes) count *= size;
+  for (std::size_t i = 0; i < count; ++i) image.values.push_back(std::uniform_real_distribution<>()(random));
+  return image;
+}
+
+/// The distance from the middle of a cube of 9 samples along each axis.
+OwnedImage<double, 3> distances() {
+  OwnedImage<double, 3> image;
+  image.grid = Grid<3>::unit({9, 9, 9});
+  for (int k = -4; k <= 4; ++k)
+    for (int j = -4; j <= 4; ++j)
+      for (int i = -4; i <= 4; ++i) image.values.push_back(std::hypot(i, j, k));
+  return image;
+}
+
+/// Numbers, some unlike any float if `rounded` is false.
+double drawn(std::mt19937& random, bool rounded) {
+  const double x = std::uniform_real_distribution<>(-100.0, 100.0)(random) + 5e6;
+  return rounded ? static_cast<double>(static_cast<float>(x)) : x;
+}
+
+TEST(CurvedPoints, HaveTheCoordinatesOfTheArrays) {
+  std::mt19937 random(5);
+  for (const bool rounded : {true, false})
+    for (std::size_t columns = 1; columns <= 4; ++columns)
+      for (const std::size_t samples : {0, 1, 5, 3000}) {
+        // side by side in one array, as in files of points, and in arrays of their own
+        std::vector<double> together;
+        for (std::size_t i = 0; i < samples * columns; ++i) together.push_back(drawn(random, rounded));
+        if (samples > 1) together[columns] = std::numeric_limits<double>::quiet_NaN();
+        if (samples > 1) together[2 * columns - 1] = -std::numeric_limits<double>::infinity();
+        std::vector<std::vector<double>> apart(columns);
+        std::vector<std::vector<float>> narrow(columns);
+        for (std::size_t i = 0; i < together.size(); ++i) {
+          apart[i % columns].push_back(together[i]);
+          narrow[i % columns].push_back(static_cast<float>(together[i]));
+        }
+        std::vector<CoordinateArray> of_points, of_arrays, of_floats;
+        for (std::size_t c = 0; c < columns; ++c) {
+          of_points.push_back({together.data() + c, static_cast<std::ptrdiff_t>(columns)});
+          of_arrays.push_back({apart[c].data()});
+          of_floats.push_back({narrow[c].data()});
+        }
+        for (const auto* each : {&of_points, &of_arrays, &of_floats}) {
+          if (each == &of_floats && !rounded) continue;
+          const std::vector<CoordinateArray>& arrays = *each;
+          const CurvedPoints points(samples, arrays, 3);
+          ASSERT_EQ(points.size(), samples);
+          EXPECT_EQ(points.columns(), columns);
+          if (samples > 1) {
+            EXPECT_EQ(points.floats() != nullptr, rounded);
+            EXPECT_EQ(points.doubles() != nullptr, !rounded);
+          }
+          for (std::size_t i = 0; i < together.size(); ++i) {
+            const double is = points(i / columns, i % columns), was = together[i];
+            EXPECT_TRUE(is == was || (std::isnan(is) && std::isnan(was))) << is << " " << was;
+          }
+        }
+      }
+  const std::vector<double> x(7);
+  expect_error(ErrorCode::InvalidArgument, "0 arrays of coordinates; expected 1 to 4",
+               [] { CurvedPoints(7, std::span<const CoordinateArray>()); });
+  const std::vector<CoordinateArray> five(5, CoordinateArray{x.data()});
+  expect_error(ErrorCode::InvalidArgument, "5 arrays of coordinates", [&] { CurvedPoints(7, five); });
+}
+
+TEST(CurvedPoints, SamplesAreNotInTwoCacheLines) {
+  for (const bool rounded : {true, false}) {
+    std::mt19937 random(5);
+    std::vector<std::vector<double>> arrays(3, std::vector<double>(100));
+    for (auto& array : arrays)
+      for (double& x : array) x = drawn(random, rounded);
+    const std::vector<CoordinateArray> three = {{arrays[0].data()}, {arrays[1].data()}, {arrays[2].data()}};
+    const CurvedPoints points(100, three);
+    EXPECT_EQ(points.pitch(), 4U);
+    const auto address = rounded ? reinterpret_cast<std::uintptr_t>(points.floats())
+                                 : reinterpret_cast<std::uintptr_t>(points.doubles());
+    EXPECT_EQ(address % (rounded ? 16 : 32), 0U);
+  }
+}
+
+/// Curved coordinates of axes along these axes: indices, times 1e4 with a remainder that float may not represent.
+template <int N>
+std::vector<CurvedAxis> random_axes(const Grid<N>& grid, const std::array<unsigned, N>& along, bool rounded) {
+  std::mt19937 random(17);
+  std::vector<CurvedAxis> curved;
+  for (int axis = 0; axis < N; ++axis) {
+    if (along[axis] == 0) continue;
+    std::array<std::size_t, N> sizes;
+    std::size_t count = 1;
+    for (int a = 0; a < N; ++a) count *= sizes[a] = (along[axis] >> a & 1u) != 0 ? grid.axes[a].size() : 1;
+    CurvedAxis& one = curved.emplace_back(CurvedAxis{axis, along[axis], {}, "coordinate", "m"});
+    for (std::size_t i = 0; i < count; ++i) {
+      std::size_t index = i;
+      for (int a = 0; a < axis; ++a) index /= sizes[a];
+      const double x = 1e4 * (static_cast<double>(index % sizes[axis]) + 0.3 * drawn(random, false) / 5e6);
+      one.values.push_back(rounded ? std::round(x) : x);
+    }
+  }
+  return curved;
+}
+
+/// Expects the vertices on edges of a grid of indices between both samples, by their share of the edge, in double. In
+/// 4D, other vertices are inside cells.
+template <class Real, int N>
+void expect_between_samples(const Contour<N, Real>& indexed, const Contour<N, Real>& moved,
+                            const std::array<std::size_t, N>& sizes, const std::vector<CurvedAxis>& curved) {
+  ASSERT_EQ(moved.vertices.size(), indexed.vertices.size());
+  std::size_t on_edges = 0;
+  for (std::size_t v = 0; v < indexed.vertices.size(); ++v) {
+    std::size_t first = 0, second = 0, axes = 0;
+    double share = 0.0;
+    for (std::size_t a = N; a-- > 0;) {
+      const auto index = static_cast<double>(indexed.vertices[v][a]), floor = std::floor(index);
+      first = first * sizes[a] + static_cast<std::size_t>(floor);
+      second = second * sizes[a] + static_cast<std::size_t>(std::ceil(index));
+      share += index - floor;
+      axes += index != floor ? 1 : 0;
+    }
+    if (axes > 1) continue;
+    ++on_edges;
+    for (std::size_t a = 0; a < N; ++a) {
+      const double place = (1.0 - share) * curved[a].values[first] + share * curved[a].values[second];
+      ASSERT_EQ(moved.vertices[v][a], static_cast<Real>(place)) << v;
+    }
+  }
+  EXPECT_GT(on_edges, N == 4 ? 1000 : indexed.vertices.size() - 1);
+}
+
+template <class Real, int N>
+void expect_places_on_edges(const std::array<std::size_t, N>& sizes) {
+  const OwnedImage<double, N> image = noise<N>(sizes);
+  std::array<unsigned, N> along;
+  along.fill((1u << N) - 1);
+  const Contour<N, Real> indexed = extract<Real>(image.view(), 0.5);
+  for (const bool rounded : {true, false}) {
+    const std::vector<CurvedAxis> curved = random_axes<N>(image.grid, along, rounded);
+    const std::vector<CurvedAxis> points = by_points(curved);
+    EXPECT_EQ(points[0].points.floats() != nullptr, rounded);
+    expect_between_samples<Real, N>(indexed, on_curved_grid<Real>(indexed, image.grid, curved), sizes, curved);
+    expect_between_samples<Real, N>(indexed, on_curved_grid<Real>(indexed, image.grid, points), sizes, curved);
+  }
+}
+
+TEST(CurvedPoints, VerticesOnEdgesAreBetweenBothSamplesInDouble) {
+  expect_places_on_edges<float, 2>({37, 41});
+  expect_places_on_edges<double, 2>({37, 41});
+  expect_places_on_edges<float, 3>({33, 21, 35});
+  expect_places_on_edges<double, 3>({33, 21, 35});
+  expect_places_on_edges<float, 4>({9, 8, 7, 8});
+  expect_places_on_edges<double, 4>({9, 8, 7, 8});
+}
+
+TEST(CurvedPoints, OfTheCallersArrays) {
+  const auto separate = random_axes<3>(Grid<3>::unit({9, 8, 7}), {7, 7, 7}, false);
+  const std::size_t count = separate[0].values.size();
+  std::vector<double> together;
+  for (std::size_t i = 0; i < count; ++i)
+    for (const CurvedAxis& one : separate) together.push_back(one.values[i]);
+  std::vector<CurvedAxis> curved;
+  std::vector<CoordinateArray> arrays;
+  for (int a = 0; a < 3; ++a) {
+    curved.push_back({a, 7, {}, "coordinate", "m"});
+    arrays.push_back({together.data() + a, 3});
+  }
+  const std::vector<std::size_t> sizes(3, count);
+  EXPECT_EQ(by_points(curved, arrays, sizes), separate);
+  EXPECT_EQ(by_points(by_points(separate)), separate);
+  EXPECT_NE(by_points(curved, arrays, std::vector<std::size_t>(3, count - 1)), separate);
+  arrays.pop_back();
+  expect_error(ErrorCode::InvalidArgument, "2 arrays of coordinates and 3 sizes; expected 3, one for each curved axis",
+               [&] { (void)by_points(curved, arrays, sizes); });
+}
+
+template <class Real, int N>
+void expect_the_contour_of_arrays(const OwnedImage<double, N>& image, const std::vector<CurvedAxis>& curved,
+                                  std::vector<CurvedSeam<N>> seams = {}) {
+  const std::vector<CurvedAxis> points = by_points(curved);
+  ASSERT_EQ(points, curved);
+  for (const CurvedAxis& one : points) EXPECT_TRUE(one.values.empty());
+  EXPECT_EQ(find_folds<N>(image.grid, points, {}, seams), find_folds<N>(image.grid, curved, {}, seams));
+  EXPECT_EQ(longitude_axes<N>(image.grid, points), longitude_axes<N>(image.grid, curved));
+  for (const bool close : {false, true})
+    for (const Ambiguity ambiguity : {Ambiguity::low, N == 4 ? Ambiguity::mean : Ambiguity::saddle}) {
+      ExtractOptions options{.ambiguity = ambiguity, .close = close, .normals = Normals::differences};
+      const auto expected = extract_curved<Real>(image.view(), curved, 0.5, options, seams);
+      ASSERT_GT(expected.vertices.size(), 100U);
+      for (const unsigned threads : {1u, 3u}) {
+        options.work.threads = threads;
+        const auto contour = extract_curved<Real>(image.view(), points, 0.5, options, seams);
+        EXPECT_EQ(contour.vertices, expected.vertices);
+        EXPECT_EQ(contour.normals, expected.normals);
+        EXPECT_EQ(contour.simplices, expected.simplices);
+        EXPECT_EQ(contour.axis_units, expected.axis_units);
+      }
+    }
+}
+
+template <int N>
+void expect_contours_by_points(const std::array<std::size_t, N>& sizes,
+                               const std::vector<std::array<unsigned, N>>& all_along) {
+  OwnedImage<double, N> image = noise<N>(sizes);
+  image.grid.axes[N - 1] = Axis::uniform(sizes[N - 1], 2.0, 0.5);
+  for (std::size_t i = 0; i < image.values.size(); i += 97) image.values[i] = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& along : all_along)
+    for (const bool rounded : {true, false}) {
+      const std::vector<CurvedAxis> curved = random_axes<N>(image.grid, along, rounded);
+      expect_the_contour_of_arrays<float>(image, curved);
+      expect_the_contour_of_arrays<double>(image, curved);
+    }
+}
+
+TEST(CurvedPoints, ContoursHaveTheBytesOfThoseOnArrays) {
+  expect_contours_by_points<2>({40, 31}, {{3, 3}, {3, 0}, {0, 3}});
+  expect_contours_by_points<3>({13, 9, 10}, {{7, 7, 7}, {3, 3, 0}, {3, 3, 7}, {7, 0, 7}, {0, 6, 6}});
+  expect_contours_by_points<4>({5, 5, 4, 4}, {{15, 15, 15, 15}, {7, 7, 7, 0}, {15, 15, 15, 0}, {3, 3, 12, 12}});
+}
+
+TEST(CurvedPoints, ContinueAcrossSeams) {
+  // closed by the places of the first samples, and by a vector that float adds exactly, or not
+  for (const double period : {0.0, 131072.0, 0.1})
+    for (const bool rounded : {true, false}) {
+      const OwnedImage<double, 3> image = noise<3>({9, 8, 7});
+      const std::vector<CurvedAxis> curved = random_axes<3>(image.grid, {7, 7, 7}, rounded);
+      for (const int axis : {0, 1, 2}) {
+        CurvedSeam<3> seam{axis, {}};
+        seam.vector[axis] = period;
+        expect_the_contour_of_arrays<double, 3>(image, curved, {seam});
+      }
+      expect_the_contour_of_arrays<float, 3>(image, curved, {{0, {}}, {2, {}}});
+    }
+}
+
+TEST(CurvedPoints, SomeColumnsOnlyOrInAnotherOrder) {
+  const OwnedImage<double, 3> image = noise<3>({9, 8, 7});
+  const std::vector<CurvedAxis> separate = random_axes<3>(image.grid, {7, 7, 7}, false), points = by_points(separate);
+  const auto swapped = [](std::vector<CurvedAxis> curved) {
+    std::swap(curved[0].axis, curved[2].axis);
+    return curved;
+  };
+  const auto without = [](std::vector<CurvedAxis> curved) {
+    curved.erase(curved.begin() + 1);
+    return curved;
+  };
+  EXPECT_EQ(extract_curved<double>(image.view(), swapped(points), 0.5).vertices,
+            extract_curved<double>(image.view(), swapped(separate), 0.5).vertices);
+  EXPECT_EQ(extract_curved<double>(image.view(), without(points), 0.5).vertices,
+            extract_curved<double>(image.view(), without(separate), 0.5).vertices);
+  auto wrong = points;
+  wrong[1].column = 3;
+  expect_error(ErrorCode::InvalidGrid, "column 3 of the points for axis 1; expected a number below 3",
+               [&] { (void)extract_curved(image.view(), wrong, 0.5); });
+}
+
+TEST(CurvedPoints, UnknownCoordinatesAreErrorsOnlyAtTheContour) {
+  const OwnedImage<double, 3> image = distances();
+  for (const bool rounded : {true, false}) {
+    auto curved = random_axes<3>(image.grid, {7, 7, 7}, rounded);
+    curved[1].values[0] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(extract_curved(image.view(), by_points(curved), 3.0).simplices.empty());
+    // at the sample (1, 4, 4), beside the contour
+    curved[2].values[(4 * 9 + 4) * 9 + 1] = std::numeric_limits<double>::infinity();
+    for (const unsigned threads : {1u, 3u}) {
+      ExtractOptions options;
+      options.work.threads = threads;
+      expect_error(ErrorCode::UnsupportedData, ", 4, 4), which has unknown coordinates; expected missing values there",
+                   [&] { (void)extract_curved(image.view(), by_points(curved), 2.7, options); });
+    }
+  }
+}
+
+TEST(CurvedPoints, LargeCoordinatesAreNotUnknown) {
+  // Infinite as float, so the vertices' rounded coordinates do not show which are known.
+  const OwnedImage<double, 3> image = distances();
+  auto curved = random_axes<3>(image.grid, {7, 7, 7}, false);
+  for (double& x : curved[0].values) x *= 1e300;
+  const auto contour = extract_curved<float>(image.view(), by_points(curved), 2.7);
+  EXPECT_TRUE(std::isinf(contour.vertices.front()[0]));
+  EXPECT_TRUE(std::isfinite(contour.vertices.front()[1]));
+}
+
+}  // namespace
+}  // namespace tegl
