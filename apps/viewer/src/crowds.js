@@ -2,7 +2,7 @@
 //
 // Events that are drawn on top of each other: crowds, each drawn as one mark with a number.
 
-const APART = 8; // pixels: dots that are nearer to each other cannot be told apart
+const APART = 8;   // pixels: dots that are nearer to each other cannot be told apart
 const WIDEST = 22; // pixels that a mark stands for, at most
 
 /** The width of a mark with a number, in pixels. */

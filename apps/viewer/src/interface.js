@@ -24,7 +24,9 @@ export function interfaceOf(app) {
       expect(Number.isFinite(t), 'time', t, `a number, from ${app.first} to ${app.last}`);
       app.setTime(t);
     },
-    get range() { return [app.first, app.last]; },
+    get range() {
+      return [app.first, app.last];
+    },
     /** Simplices shown, before clipping: for 4D contours the triangles of tegl slice at this time. */
     count: () => app.count(),
     play: (isPlaying = true) => {
@@ -37,7 +39,7 @@ export function interfaceOf(app) {
       expect(ids.includes(id), 'colorBy', id, `one of ${listed(ids)}`);
       app.colorBy(id);
     },
-    colorings: () => app.current.sources().map(({ id }) => id),
+    colorings: () => app.current.sources().map(({id}) => id),
     /** Shows what lies from a share of an axis' range to another alone. */
     clip: (axis, from, to) => {
       const { axes } = app.stage;

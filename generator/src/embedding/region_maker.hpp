@@ -37,8 +37,8 @@ struct RegionDivision {
 /// Searches for a division into positive tetrahedra without other vertices than those of the surface; if there is none,
 /// with one centre. Tetrahedra of a centre on the ray of a barycentre and of triangles around the barycentre are walls
 /// between the contour and the copy, parallel to the rays. Simplices whose vertices all lie in one square or on the
-/// contour belong to the surface; in a cap, those on the contour need not. `surface`: triangles oriented outwards. Empty
-/// if the search fails.
+/// contour belong to the surface; in a cap, those on the contour need not. `surface`: triangles oriented outwards.
+/// Empty if the search fails.
 [[nodiscard]] std::optional<RegionDivision> divide_region(const RegionProof& proof, const RegionFrame& frame,
                                                           std::span<const std::array<std::uint8_t, 3>> surface);
 

@@ -90,8 +90,8 @@ struct CurvedAxis {
   unsigned along = 0;  ///< bit a: the coordinate differs along axis a of the image; bit `axis` is set
   /// A coordinate for each index of the axes in `along`, the first of these axes fastest. NaN or infinite: unknown.
   std::vector<double> values = {};
-  std::string name = {};  ///< of the coordinate, such as "lon"; empty: as the image's axis
-  std::string unit = {};  ///< of the coordinate; empty: as the image's axis
+  std::string name = {};                               ///< of the coordinate, such as "lon"; empty: as the image's axis
+  std::string unit = {};                               ///< of the coordinate; empty: as the image's axis
   bool operator==(const CurvedAxis&) const = default;  ///< equal if all members are
 };
 
