@@ -201,13 +201,19 @@ def periodic_axes(periodic: object, prepared: Prepared,
 
 def _periodic_axis(axis: int | str, prepared: Prepared,
                    curved: Sequence[tuple[int, int, np.ndarray, str, str]]) -> int:
-    """The library's axis of a name or number; "lon" and "longitude" also are the axis along which longitudes, by their unit,
-    run around the globe."""
-    if axis in ("lon", "longitude") and axis not in prepared.names and prepared.ndim <= 4:
-        found = _tegl.longitude_axes(prepared.image, curved)
-        if len(found) == 1:
-            return found[0]
-    return prepared.library_axis(axis)
+    """The library's axis of a name or number. "lon" and "longitude" also are the axis along which longitudes, by their unit,
+    run around the globe; so is the name of longitudes in an array of several dimensions."""
+    if not isinstance(axis, str) or prepared.ndim > 4:
+        return prepared.library_axis(axis)
+    if axis not in prepared.names:
+        found = _tegl.longitude_axes(prepared.image, curved) if axis in ("lon", "longitude") else []
+        return found[0] if len(found) == 1 else prepared.library_axis(axis)
+    number = prepared.library_axis(axis)
+    for one in curved:
+        found = [a for a in _tegl.longitude_axes(prepared.image, [one]) if one[1] >> a & 1]
+        if len(found) == 1 and number in (one[0], found[0]):  # the other coordinate has the other axis
+            return found[0] if number == one[0] else one[0]
+    return number
 
 
 def curved_axes(curved: object, prepared: Prepared) -> list[tuple[int, int, np.ndarray, str, str]]:

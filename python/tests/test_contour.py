@@ -342,6 +342,7 @@ def test_periods_are_positive_and_finite(period):
             function(values, 0.5, periodic={0: period})
 
 
+@pytest.mark.filterwarnings("ignore:the curved grid is folded")  # across latitudes
 def test_longitudes_that_span_360_degrees_are_found():
     lon, lat = np.meshgrid(np.arange(0.0, 360.0, 10.0), np.arange(-40.0, 41.0, 10.0))
     spot = 30 - np.hypot(np.minimum(lon, 360 - lon), lat)
@@ -354,6 +355,16 @@ def test_longitudes_that_span_360_degrees_are_found():
     with pytest.raises(ValueError, match="no axis is named 'longitude'; expected one of"):
         tegl.contour(spot, 0.0, periodic="longitude", **names)
     assert tegl.count(spot, 0.0, periodic="auto", **names, **units) == (len(found.vertices), len(found.simplices))
+    # on a curved grid, whose longitudes are named by either axis, the one along which they run around the globe
+    curved = {"curved": {"lat": lat, "lon": lon + lat / 50}, **units}
+    for order in (("lat", "lon"), ("lon", "lat")):
+        turned = {"curved": curved["curved"], "axis_names": order, "axis_units": tuple(f"degrees_{'east' if n == 'lon' else 'north'}"
+                                                                                      for n in order)}
+        for name in ("lon", "auto", 1):
+            around = tegl.contour(spot, 0.0, periodic=name, **turned)
+            assert around.check().is_closed and around.check().components == 1
+        for name in ("lat", 0):
+            assert tegl.contour(spot, 0.0, periodic=name, **turned).check().components == 2
     plain = tegl.contour(spot, 0.0, periodic="auto", **names)
     assert plain.check().components == 2 and np.array_equal(plain.vertices, tegl.contour(spot, 0.0, **names).vertices)
     assert tegl.count(spot, 0.0, periodic="auto", **names) == (len(plain.vertices), len(plain.simplices))

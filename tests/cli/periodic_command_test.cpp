@@ -579,8 +579,8 @@ TEST_F(PeriodicCommand, CurvedLongitudesAreNamedByDimensionCoordinateLetterOrUni
   // the first dimension is the axis y of the program
   for (const char* const axis : {"TLONG", "i", "y", "lon", "longitude", "auto"}) expect_around(turned, axis);
   expect_refused_of(turned, {"--periodic", "nav_lon", "-o", output},
-                    "--periodic nav_lon names no axis; expected one of ");
-  expect_refused_of(turned, {"--periodic", "nav_lon", "-o", output}, "TLONG");
+                    "--periodic nav_lon names no axis; expected one of j or lat, i or TLONG, or x, y for them in this "
+                    "order, or longitude, or all");
   expect_refused_of(file, {"--periodic", "TLONG,lon", "-o", output}, "--periodic names the axis lon twice");
   // with the grid of the indices, there are no longitudes
   const std::string refused =

@@ -438,14 +438,21 @@ std::vector<AxisNames> names_of_axes(const Grid<N>& grid) {
   return axes;
 }
 
-/// The axis that the name of a curved coordinate stands for: of longitudes the one along which they run around the
-/// globe, which in a file with the other order of dimensions is not the coordinate's own.
+/// The axes that the names of curved coordinates stand for: of longitudes the one along which they run around the
+/// globe. In a file with the other order of dimensions that is the axis of another coordinate, which gets theirs.
 template <int N>
-int named_by(const Grid<N>& grid, const CurvedAxis& one) {
-  if (!is_longitude_unit(one.unit)) return one.axis;
-  std::vector<int> around = longitude_axes<N>(grid, std::span(&one, 1));
-  std::erase_if(around, [&](int a) { return (one.along >> a & 1u) == 0; });
-  return around.size() == 1 ? around.front() : one.axis;
+std::vector<int> axes_of_names(const Grid<N>& grid, const std::vector<CurvedAxis>& curved) {
+  std::vector<int> axes;
+  for (const CurvedAxis& one : curved) axes.push_back(one.axis);
+  for (std::size_t c = 0; c < curved.size(); ++c) {
+    if (!is_longitude_unit(curved[c].unit)) continue;
+    std::vector<int> around = longitude_axes<N>(grid, std::span(&curved[c], 1));
+    std::erase_if(around, [&](int a) { return (curved[c].along >> a & 1u) == 0; });
+    if (around.size() != 1) continue;
+    std::replace(axes.begin(), axes.end(), around.front(), axes[c]);
+    axes[c] = around.front();
+  }
+  return axes;
 }
 
 }  // namespace
@@ -468,8 +475,10 @@ std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<Curve
                                     const std::vector<std::string>& names) {
   if (names.empty()) return {};
   std::vector<AxisNames> named_axes = names_of_axes(grid);
-  for (const CurvedAxis& one : curved) {
-    AxisNames& axis = named_axes[static_cast<std::size_t>(named_by(grid, one))];
+  const std::vector<int> of_names = axes_of_names(grid, curved);
+  for (std::size_t c = 0; c < curved.size(); ++c) {
+    const CurvedAxis& one = curved[c];
+    AxisNames& axis = named_axes[static_cast<std::size_t>(of_names[c])];
     axis.is_longitude = axis.is_longitude || is_longitude_unit(one.unit);
     if (!one.name.empty() && one.name != axis.names.front()) axis.names.push_back(one.name);
   }

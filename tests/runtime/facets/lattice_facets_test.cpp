@@ -19,6 +19,7 @@
 #include "errors.hpp"
 #include "tegl/check.hpp"
 #include "tegl/facet_hierarchy.hpp"
+#include "tegl/polygons.hpp"
 #include "torus.hpp"
 
 namespace tegl::test {
@@ -204,6 +205,10 @@ TEST(LatticeFacets, DoNotDependOnThreadsAndRefuseBadArguments) {
   ExtractOptions normals;
   normals.normals = Normals::sobel;
   expect_refused("normals on a lattice are sobel", Lattice::fcc, normals, {});
+  // chords of polygons in cells whose common faces are not known
+  expect_error(ErrorCode::UnsupportedData, "polygons in the cells of a mesh or lattice", [&] {
+    (void)triangulate(extract_facets<double>(image.view(), Lattice::fcc, 0.5), PolygonTriangulation::fan);
+  });
 }
 
 }  // namespace
