@@ -225,6 +225,19 @@ std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, u
   return values;
 }
 
+/// The questions with this answer, yes or unsure, as bits; those past the last question have no meaning.
+Word with_answer(const JoinQuestions& questions, JoinQuestions::Answer answer) noexcept {
+  static_assert(JoinQuestions::no == 0 && JoinQuestions::yes == 1 && JoinQuestions::unsure == 2);
+  Word found = 0;
+  for (std::size_t i = 0; i < JoinQuestions::kMost; i += 8) {
+    std::uint64_t eight = 0;  // the first one lowest, whatever the order of bytes
+    for (std::size_t j = 0; j < 8; ++j) eight |= std::uint64_t{questions.answers[i + j]} << (8 * j);
+    const std::uint64_t chosen = eight >> (answer / 2) & 0x0101010101010101u;
+    found |= chosen * 0x0102040810204080u >> 56 << i;
+  }
+  return found;
+}
+
 /// Decides the centres of cubes by the trilinear interpolant. Returns those that rounding could decide.
 Word join(const FaceBlock<3>& block, double isovalue, const RowTable& table, const CubesByPairs& open,
           CubesOfWord& cubes) noexcept {
@@ -238,13 +251,14 @@ Word join(const FaceBlock<3>& block, double isovalue, const RowTable& table, con
   JoinQuestions questions;
   ask(block, open.with_one, questions);
   answer(questions, isovalue);
-  const auto& joins = cube_joins();
-  Word unsure = 0;
-  for (std::size_t q = 0; q < open.with_one.count; ++q) {
-    const unsigned joined = 1u + unsigned{joins[open.with_one.entries[q]].high};  // separate, low, high as numbers
-    choose(open.with_one, q, joined * unsigned{questions.answers[q] == JoinQuestions::yes});
-    unsure |= Word{questions.answers[q] == JoinQuestions::unsure} << open.with_one.numbers[q];
+  const Word asked = open.with_one.count == 0 ? 0 : ~Word{0} >> (kWordBits - open.with_one.count);
+  for (Word rest = with_answer(questions, JoinQuestions::yes) & asked; rest != 0; rest &= rest - 1) {
+    const auto q = static_cast<std::size_t>(std::countr_zero(rest));
+    choose(open.with_one, q, 1u + unsigned{cube_joins()[open.with_one.entries[q]].high});  // separate, low, high
   }
+  Word unsure = 0;
+  for (Word rest = with_answer(questions, JoinQuestions::unsure) & asked; rest != 0; rest &= rest - 1)
+    unsure |= Word{1} << open.with_one.numbers[static_cast<std::size_t>(std::countr_zero(rest))];
   return unsure;
 }
 

@@ -297,7 +297,8 @@ template <int N>
     const auto for_words = [&](const auto& visit) {
       for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
         const auto members = [&] {
-          return members_of(ambiguous_, room.signatures + first, std::min<std::size_t>(count.active - first, kWordBits));
+          return members_of(ambiguous_, room.signatures + first,
+                            std::min<std::size_t>(count.active - first, kWordBits));
         };
         Word rest = members();
         while (rest != 0) {

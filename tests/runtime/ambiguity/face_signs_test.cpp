@@ -305,7 +305,7 @@ void expect_open(const OpenCubes& open, bool has_one_pair, const std::vector<uns
 TEST(CubeWords, VariantsAreThoseOfEachCubeByItself) {
   std::mt19937_64 random(6);
   std::size_t with_one = 0, with_more = 0;
-  for (int round = 0; round < 6000; ++round) {
+  for (int round = 0; round < 12'000; ++round) {
     const RowTable& table = variant_table<3>(round % 2 == 0 ? Triangulation::compact : Triangulation::barycentric).rows;
     const auto rule = static_cast<CentreRule>(round / 2 % 3);
     alignas(64) std::array<std::uint8_t, kWordBits> high;
@@ -349,7 +349,7 @@ TEST(CubeWords, VariantsAreThoseOfEachCubeByItself) {
     with_more += open.with_more.count;
   }
   EXPECT_GT(with_one, 1000u);
-  EXPECT_GT(with_more, 100u);
+  EXPECT_GT(with_more, 30u);
 }
 
 }  // namespace
