@@ -225,94 +225,64 @@ std::array<double, 8> corners_of_cube(const FaceBlock<N>& block, unsigned bit, u
   return values;
 }
 
-/// Tiles of a word that are being resolved.
-struct Resolved {
-  std::array<std::uint8_t, kWordBits> bits;      ///< positions in the word
-  std::array<std::uint16_t, kWordBits> entries;  ///< of the table of resolved cubes
-  std::array<std::uint8_t, kWordBits> choices;   ///< of the centres, as numbers
-  std::size_t count;
-};
+/// The questions with this answer, yes or unsure, as bits; those past the last question have no meaning.
+Word with_answer(const JoinQuestions& questions, JoinQuestions::Answer answer) noexcept {
+  static_assert(JoinQuestions::no == 0 && JoinQuestions::yes == 1 && JoinQuestions::unsure == 2);
+  Word found = 0;
+  for (std::size_t i = 0; i < JoinQuestions::kMost; i += 8) {
+    std::uint64_t eight = 0;  // the first one lowest, whatever the order of bytes
+    for (std::size_t j = 0; j < 8; ++j) eight |= std::uint64_t{questions.answers[i + j]} << (8 * j);
+    const std::uint64_t chosen = eight >> (answer / 2) & 0x0101010101010101u;
+    found |= chosen * 0x0102040810204080u >> 56 << i;
+  }
+  return found;
+}
 
 /// Decides the centres of cubes by the trilinear interpolant. Returns those that rounding could decide.
-Word join(const FaceBlock<3>& block, double isovalue, Resolved& tiles) noexcept {
-  const auto& joins = cube_joins();
-  // list the cubes with one pair of edges, without branches
-  std::array<std::uint8_t, kWordBits> numbers, bits;
-  std::array<const tables::CubeJoin*, kWordBits> cubes;
-  cubes[0] = nullptr;  // the others are not cleared, which would take longer than to list them
-  std::size_t count = 0;
-  Word with_more = 0;  // pairs of edges
-  for (std::size_t j = 0; j < tiles.count; ++j) {
-    const tables::CubeJoin& cube = joins[tiles.entries[j]];
-    numbers[count] = static_cast<std::uint8_t>(j);
-    bits[count] = tiles.bits[j];
-    cubes[count] = &cube;
-    count += static_cast<std::size_t>(cube.pairs == 1);
-    with_more |= Word{cube.pairs > 1} << j;
-  }
-  for (Word rest = with_more; rest != 0; rest &= rest - 1) {
-    const auto j = static_cast<std::size_t>(std::countr_zero(rest));
-    const auto values = corners_of_cube<3, 7>(block, tiles.bits[j], 0);
-    tiles.choices[j] = static_cast<std::uint8_t>(detail::decide_centre(values, isovalue, tiles.entries[j]));
+Word join(const FaceBlock<3>& block, double isovalue, const RowTable& table, const CubesByPairs& open,
+          CubesOfWord& cubes) noexcept {
+  const auto choose = [&](const OpenCubes& of, std::size_t i, unsigned choice) {
+    cubes.change(of.numbers[i], table.variant(of.entries[i], 0), table.variant(of.entries[i], choice));
+  };
+  for (std::size_t i = 0; i < open.with_more.count; ++i) {
+    const auto values = corners_of_cube<3, 7>(block, open.with_more.places[i], 0);
+    choose(open.with_more, i, static_cast<unsigned>(decide_centre(values, isovalue, open.with_more.entries[i])));
   }
   JoinQuestions questions;
-  ask(block, {bits.data(), count}, cubes.data(), questions);
+  ask(block, open.with_one, questions);
   answer(questions, isovalue);
-  Word unsure = 0;
-  for (std::size_t q = 0; q < count; ++q) {
-    const unsigned joined = 1u + unsigned{cubes[q]->high};  // choices as numbers: separate, low, high
-    const auto is_joined = unsigned{questions.answers[q] == JoinQuestions::yes};
-    tiles.choices[numbers[q]] = static_cast<std::uint8_t>(joined * is_joined);
-    unsure |= Word{questions.answers[q] == JoinQuestions::unsure} << numbers[q];
+  const Word asked = open.with_one.count == 0 ? 0 : ~Word{0} >> (kWordBits - open.with_one.count);
+  for (Word rest = with_answer(questions, JoinQuestions::yes) & asked; rest != 0; rest &= rest - 1) {
+    const auto q = static_cast<std::size_t>(std::countr_zero(rest));
+    choose(open.with_one, q, 1u + unsigned{cube_joins()[open.with_one.entries[q]].high});  // separate, low, high
   }
+  Word unsure = 0;
+  for (Word rest = with_answer(questions, JoinQuestions::unsure) & asked; rest != 0; rest &= rest - 1)
+    unsure |= Word{1} << open.with_one.numbers[static_cast<std::size_t>(std::countr_zero(rest))];
   return unsure;
+}
+
+/// Those of `ambiguous`, by number among the active tiles, that are at the positions `at`.
+Word numbers_of(Word at, const CubesOfWord& cubes) noexcept {
+  Word numbers = 0;
+  for (Word rest = cubes.ambiguous; rest != 0; rest &= rest - 1) {
+    const auto number = static_cast<unsigned>(std::countr_zero(rest));
+    numbers |= (at >> (cubes.at[number] % kWordBits) & 1u) << number;
+  }
+  return numbers;
 }
 
 }  // namespace
 
 Word resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
-             TilesOfWord& tiles) noexcept {
+             CubesOfWord& cubes) noexcept {
   // Cubes are decided by means, by the interpolant, or not at all.
-  const bool by_means = estimator.is_by_means() && !estimator.separates();
-  const bool by_joins = estimator.is_by_saddles() && !estimator.separates();
-  const unsigned first_choice = by_means ? 1 : 0, centre = by_means ? 1 : 0;
-  // By local pointers: bytes may alias the members, which would be read again after each.
-  const std::uint32_t* const numbers = tiles.numbers;
-  const std::uint16_t* const at = tiles.at;
-  std::uint16_t* const keys = tiles.keys;
-  const std::uint64_t* const highs = block.high.data();
-  const std::size_t count = tiles.count;
-  std::int32_t simplices = 0, own_vertices = 0;
-  const auto apply = [&](std::size_t j, unsigned entry, unsigned choice) {
-    const Variant& variant = table.variant(entry, choice);
-    simplices += variant.more_simplices;
-    own_vertices += variant.more_own_vertices;
-    keys[numbers[j]] = variant.key;
-  };
-  Word unsure = 0;
-  if (!by_joins) {
-    for (std::size_t j = 0; j < count; ++j) {
-      const auto high = static_cast<unsigned>(highs[at[numbers[j]] % kWordBits]);
-      apply(j, ResolvedCubes::entry(keys[numbers[j]], high & 63u), first_choice + (high >> kFirstCube<3> & centre));
-    }
-  } else {
-    Resolved resolved;
-    resolved.count = count;
-    for (std::size_t j = 0; j < count; ++j) {
-      const unsigned bit = at[numbers[j]] % kWordBits;
-      const auto high = static_cast<unsigned>(highs[bit]);
-      resolved.bits[j] = static_cast<std::uint8_t>(bit);
-      resolved.entries[j] = static_cast<std::uint16_t>(ResolvedCubes::entry(keys[numbers[j]], high & 63u));
-    }
-    resolved.choices.fill(0);
-    unsure = join(block, estimator.isovalue(), resolved);
-    for (std::size_t j = 0; j < count; ++j) apply(j, resolved.entries[j], resolved.choices[j]);
-  }
-  for (std::size_t j = 0; block.unsure != 0 && j < count; ++j)
-    unsure |= (block.unsure >> (at[numbers[j]] % kWordBits) & 1u) << j;
-  tiles.more_simplices = simplices;
-  tiles.more_own_vertices = own_vertices;
-  return unsure;
+  const CentreRule by_rule = estimator.is_by_means() ? CentreRule::by_bit : CentreRule::by_joins;
+  const CentreRule rule = estimator.separates() ? CentreRule::separate : by_rule;
+  CubesByPairs open;
+  choose_variants(block.high.data(), table.variants, rule, cubes, open);
+  const Word unsure = block.unsure == 0 ? 0 : numbers_of(block.unsure, cubes);
+  return unsure | (rule == CentreRule::by_joins ? join(block, estimator.isovalue(), table, open, cubes) : 0);
 }
 
 }  // namespace tegl::detail

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "ambiguity/cube_words.hpp"
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/face_signs.hpp"
 #include "tile/cube_key.hpp"
@@ -45,18 +46,10 @@ class RowFaces {
   FaceBlock<N> block_;
 };
 
-/// The ambiguous tiles of a word, among those of a row.
-struct TilesOfWord {
-  const std::uint32_t* numbers;                            ///< of the tiles in the row
-  std::size_t count;                                       ///< up to 64
-  const std::uint16_t* at;                                 ///< of the row: positions of its tiles
-  std::uint16_t* keys;                                     ///< of the row: signatures, to be replaced by keys
-  std::int32_t more_simplices = 0, more_own_vertices = 0;  ///< than without resolution
-};
-/// Replaces the tiles' signatures by their keys. Returns the tiles that rounding could decide, as bits: these must be
-/// resolved individually.
+/// Replaces the signatures of a word's ambiguous tiles by their keys. Returns the tiles that rounding could decide, as
+/// bits by number among the active tiles: these must be resolved individually.
 [[nodiscard]] Word resolve(const FaceEstimator<3>& estimator, const RowTable& table, const FaceBlock<3>& block,
-                           TilesOfWord& tiles) noexcept;
+                           CubesOfWord& cubes) noexcept;
 
 /// Key of an ambiguous tile.
 template <int N>

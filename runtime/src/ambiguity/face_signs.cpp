@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ambiguity/saddle.hpp"
+
 #define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ambiguity/face_signs.cpp"
@@ -21,7 +23,6 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::ScalableTag<double>;
-using Bits = hn::Rebind<std::uint64_t, D>;
 
 /// Number of the face along `axes` (bits) at sides `base` of the other axes.
 template <int N>
@@ -50,66 +51,138 @@ struct FaceNumbers {
 };
 
 /// Bits of the high faces, for as many tiles as there are lanes.
+template <class D>
 struct Highs {
+  using Bits = hn::RebindToUnsigned<D>;
   hn::Vec<Bits> bits;
 
   HWY_INLINE Highs() : bits(hn::Zero(Bits())) {}
   template <class M>
   HWY_INLINE void take(unsigned face, M is_high) {
     const Bits d;
-    const auto bit = hn::Set(d, std::uint64_t{1} << face);
+    const auto bit = hn::Set(d, hn::TFromD<Bits>{1} << face);
 #if HWY_TARGET <= HWY_AVX3
-    bits.raw = _mm512_mask_or_epi64(bits.raw, is_high.raw, bits.raw, bit.raw);
+    if constexpr (sizeof(hn::TFromD<D>) == 4)
+      bits.raw = _mm512_mask_or_epi32(bits.raw, is_high.raw, bits.raw, bit.raw);
+    else
+      bits.raw = _mm512_mask_or_epi64(bits.raw, is_high.raw, bits.raw, bit.raw);
 #else
     bits = hn::Or(bits, hn::IfThenElseZero(hn::RebindMask(d, is_high), bit));
 #endif
   }
+  /// Stores the faces of the tiles from `at` on.
+  template <int N>
+  HWY_INLINE void store(std::size_t at, FaceBlock<N>& block) const {
+    if constexpr (N == 3) {
+#if HWY_TARGET <= HWY_AVX3
+      auto* const to = reinterpret_cast<__m128i*>(block.high.data() + at);
+      if constexpr (sizeof(hn::TFromD<D>) == 4)
+        _mm_storeu_si128(to, _mm512_cvtepi32_epi8(bits.raw));
+      else
+        _mm_storel_epi64(to, _mm512_cvtepi64_epi8(bits.raw));
+#else
+      if constexpr (sizeof(hn::TFromD<D>) == 4) {
+        const hn::Rebind<std::uint8_t, Bits> bytes;
+        hn::StoreU(hn::DemoteTo(bytes, hn::BitCast(hn::RebindToSigned<Bits>(), bits)), bytes, block.high.data() + at);
+      } else {
+        alignas(64) std::uint64_t wide[hn::MaxLanes(Bits())];
+        hn::Store(bits, Bits(), wide);
+        for (std::size_t i = 0; i < hn::Lanes(Bits()); ++i) block.high[at + i] = static_cast<std::uint8_t>(wide[i]);
+      }
+#endif
+    } else {
+      hn::Store(bits, Bits(), block.high.data() + at);
+    }
+  }
+};
+
+/// The numbers that faces are decided by: the samples of a block.
+template <int N>
+struct Samples {
+  using D = HWY_NAMESPACE::D;
+  static constexpr double kUnitOfMeans = 0x1p-46, kUnitOfSaddles = 0x1p-47;
+  static constexpr double kMostOfMeans = 0x1p1000, kLeastOfSaddles = 0x1p-480, kMostOfSaddles = 0x1p500;
+  static constexpr std::size_t kRows = FaceBlock<N>::kRows;
+
+  const FaceBlock<N>& block;
+  double isovalue;
+
+  /// Some tiles, at their own positions or the next ones.
+  HWY_INLINE auto at(std::size_t row, std::size_t place) const {
+    return hn::LoadU(D(), block.samples[row].data() + place);
+  }
+};
+
+/// The numbers that faces are decided by: the differences of a block's samples from the isovalue, rounded to 24 bits.
+/// Twice as many lanes are as fast, and if rounding could decide a face, its samples are taken instead. With an error
+/// of each difference of less than 2^-23.9 of it, the sum of 4 or 8 has one of less than 2^-21.9 of the sum of their
+/// absolute values, and a determinant, fused or not, one of less than 2^-20.9 of the square of the largest.
+template <int N>
+class ShortDifferences {
+ public:
+  using D = hn::ScalableTag<float>;
+  static constexpr float kUnitOfMeans = 0x1p-20f, kUnitOfSaddles = 0x1p-20f;
+  static constexpr float kMostOfMeans = 0x1p100f, kLeastOfSaddles = 0x1p-40f, kMostOfSaddles = 0x1p40f;
+  static constexpr std::size_t kRows = FaceBlock<N>::kRows;
+  static constexpr float isovalue = 0.0f;
+
+  HWY_INLINE ShortDifferences(const FaceBlock<N>& block, double of) {
+    const HWY_NAMESPACE::D d;
+    const hn::Rebind<float, HWY_NAMESPACE::D> narrow;
+    const auto minus = hn::Set(d, -of);
+    for (std::size_t r = 0; r < kRows; ++r)
+      for (std::size_t i = 0; i < block.kSamples; i += hn::Lanes(d))
+        hn::StoreU(hn::DemoteTo(narrow, hn::Add(hn::LoadU(d, block.samples[r].data() + i), minus)), narrow,
+                   rows_[r].data() + i);
+  }
+  HWY_INLINE auto at(std::size_t row, std::size_t place) const { return hn::LoadU(D(), rows_[row].data() + place); }
+
+ private:
+  alignas(64) std::array<std::array<float, FaceBlock<N>::kPitch>, kRows> rows_;
 };
 
 /// Decides faces by the sums of their corners. `least`: smallest distance of a sum from its limit.
+template <class D>
 struct Means {
-  Highs highs;
+  using T = hn::TFromD<D>;
+  Highs<D> highs;
   hn::Vec<D> least;
-  double isovalue;
+  T isovalue;
 
-  HWY_INLINE explicit Means(double t) : least(hn::Set(D(), 0x1p1023)), isovalue(t) {}
+  HWY_INLINE explicit Means(T t) : least(hn::Set(D(), hwy::HighestValue<T>())), isovalue(t) {}
   template <class V>
   HWY_INLINE void take(unsigned face, unsigned corners, V sum) {
-    const auto limit = hn::Set(D(), corners * isovalue);
+    const auto limit = hn::Set(D(), static_cast<T>(corners) * isovalue);
     highs.take(face, hn::Ge(sum, limit));
     least = hn::Min(least, hn::Abs(hn::Sub(sum, limit)));
   }
 };
 
-/// Samples of some tiles, at their own positions or the next ones.
-template <int N>
-HWY_INLINE auto samples_at(const FaceBlock<N>& block, std::size_t row, std::size_t at) {
-  return hn::LoadU(D(), block.samples[row].data() + at);
-}
-
 /// Bound of the rounding errors of all sums; infinite if values are too large or not finite.
-template <int N>
-HWY_INLINE auto error_of_means(const FaceBlock<N>& block, std::size_t at, double isovalue) {
-  const D d;
-  auto size = hn::Set(d, 2.0 * block.kRows * std::abs(isovalue));
-  for (std::size_t r = 0; r < block.kRows; ++r)
-    size = hn::Add(size, hn::Add(hn::Abs(samples_at(block, r, at)), hn::Abs(samples_at(block, r, at + 1))));
-  const auto infinite = hn::Set(d, HUGE_VAL);
-  return hn::IfThenElse(hn::Lt(size, hn::Set(d, 0x1p1000)), hn::Mul(size, hn::Set(d, 0x1p-46)), infinite);
+template <class From>
+HWY_INLINE auto error_of_means(const From& from, std::size_t at) {
+  const typename From::D d;
+  using T = hn::TFromD<typename From::D>;
+  auto size = hn::Set(d, T{2} * static_cast<T>(From::kRows) * std::abs(from.isovalue));
+  for (std::size_t r = 0; r < From::kRows; ++r)
+    size = hn::Add(size, hn::Add(hn::Abs(from.at(r, at)), hn::Abs(from.at(r, at + 1))));
+  const auto infinite = hn::Set(d, static_cast<T>(HUGE_VAL));
+  return hn::IfThenElse(hn::Lt(size, hn::Set(d, From::kMostOfMeans)), hn::Mul(size, hn::Set(d, From::kUnitOfMeans)),
+                        infinite);
 }
 
 /// Decides the faces along two axes across the row, and those that these span with the row.
-template <int N>
-HWY_INLINE void take_means_across(const FaceBlock<N>& block, std::size_t at, Means& means) {
+template <int N, class From, class D>
+HWY_INLINE void take_means_across(const From& from, std::size_t at, Means<D>& means) {
   static constexpr FaceNumbers<N> kNumbers;
   for (unsigned a = 1; a < N; ++a)
     for (unsigned b = a + 1; b < N; ++b)
-      for (unsigned row = 0; row < block.kRows; ++row) {
+      for (unsigned row = 0; row < From::kRows; ++row) {
         const unsigned up_a = 1u << (a - 1), up_b = 1u << (b - 1), axes = 1u << a | 1u << b;
         if ((row & (up_a | up_b)) != 0) continue;
         const auto sum = [&](std::size_t to) HWY_ATTR {
-          return hn::Add(hn::Add(samples_at(block, row, to), samples_at(block, row | up_a, to)),
-                         hn::Add(samples_at(block, row | up_b, to), samples_at(block, row | up_a | up_b, to)));
+          return hn::Add(hn::Add(from.at(row, to), from.at(row | up_a, to)),
+                         hn::Add(from.at(row | up_b, to), from.at(row | up_a | up_b, to)));
         };
         const auto here = sum(at), next = sum(at + 1);
         means.take(kNumbers.of[axes][row << 1], 4, here);
@@ -119,24 +192,24 @@ HWY_INLINE void take_means_across(const FaceBlock<N>& block, std::size_t at, Mea
 }
 
 /// Decides the squares along the row.
-template <int N>
-HWY_INLINE void take_means_along(const FaceBlock<N>& block, std::size_t at, Means& means) {
+template <int N, class From, class D>
+HWY_INLINE void take_means_along(const From& from, std::size_t at, Means<D>& means) {
   static constexpr FaceNumbers<N> kNumbers;
   for (unsigned a = 1; a < N; ++a)
-    for (unsigned row = 0; row < block.kRows; ++row) {
+    for (unsigned row = 0; row < From::kRows; ++row) {
       const unsigned up = 1u << (a - 1);
       if ((row & up) != 0) continue;
-      const auto here = hn::Add(samples_at(block, row, at), samples_at(block, row | up, at));
-      const auto next = hn::Add(samples_at(block, row, at + 1), samples_at(block, row | up, at + 1));
+      const auto here = hn::Add(from.at(row, at), from.at(row | up, at));
+      const auto next = hn::Add(from.at(row, at + 1), from.at(row | up, at + 1));
       means.take(kNumbers.of[1u << a | 1u][row << 1], 4, hn::Add(here, next));
     }
 }
 
 /// Decides the tesseract and its cubes across the row.
-HWY_INLINE void take_means_of_rows(const FaceBlock<4>& block, std::size_t at, bool cubes, Means& means) {
+HWY_INLINE void take_means_of_rows(const Samples<4>& from, std::size_t at, bool cubes, Means<D>& means) {
   const auto sum = [&](std::size_t to) HWY_ATTR {
-    auto result = samples_at(block, 0, to);
-    for (std::size_t row = 1; row < block.kRows; ++row) result = hn::Add(result, samples_at(block, row, to));
+    auto result = from.at(0, to);
+    for (std::size_t row = 1; row < from.kRows; ++row) result = hn::Add(result, from.at(row, to));
     return result;
   };
   const auto here = sum(at), next = sum(at + 1);
@@ -155,7 +228,7 @@ HWY_INLINE bool are_whole(const FaceBlock<N>& block, double limit) {
   auto so_far = hn::Eq(scale, scale);
   for (std::size_t r = 0; r < block.kRows; ++r)
     for (std::size_t i = 0; i <= block.tiles; i += hn::Lanes(d)) {
-      const auto scaled = hn::Mul(samples_at(block, r, i), scale);
+      const auto scaled = hn::Mul(hn::LoadU(d, block.samples[r].data() + i), scale);
       so_far = hn::And(so_far, hn::And(hn::Eq(hn::Round(scaled), scaled), hn::Lt(hn::Abs(scaled), most)));
     }
   return hn::AllTrue(d, so_far);
@@ -181,29 +254,54 @@ HWY_INLINE void set_unsure(FaceBlock<N>& block, std::uint64_t unsure, bool may_b
   if (block.unsure != 0 && may_be_exact && are_whole(block, limit)) block.unsure = 0;
 }
 
+/// Decides as many faces as there are lanes. Returns the tiles of which rounding cannot decide a face.
+template <int N, class From>
+HWY_INLINE auto means_at(const From& from, std::size_t at, FaceBlock<N>& block) {
+  Means<typename From::D> means(from.isovalue);
+  take_means_across<N>(from, at, means);
+  take_means_along<N>(from, at, means);
+  if constexpr (N == 4) take_means_of_rows(from, at, true, means);
+  means.highs.store(at, block);
+  return hn::Gt(means.least, error_of_means(from, at));
+}
+
+/// Decides the faces of a block's tiles: by `decide(from, at)`, which returns the tiles of which rounding cannot decide
+/// a face. Returns those of which it could, as bits.
+template <int N, class Decide>
+HWY_INLINE std::uint64_t decide_block(FaceBlock<N>& block, double isovalue, const Decide& decide) {
+  const D d;
+  const Samples<N> samples{block, isovalue};
+  std::uint64_t unsure = 0;
+  if constexpr (N == 3 && HWY_TARGET != HWY_SCALAR) {
+    const ShortDifferences<N> differences(block, isovalue);
+    const typename ShortDifferences<N>::D twice;
+    for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(twice)) {
+      const auto sure = decide(differences, i);
+      if (HWY_LIKELY(hn::AllTrue(twice, hn::Or(sure, hn::Not(hn::FirstN(twice, block.tiles - i)))))) continue;
+      for (const std::size_t at : {i, i + hn::Lanes(d)}) unsure |= unsure_from(at, decide(samples, at));
+    }
+  } else {
+    for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) unsure |= unsure_from(i, decide(samples, i));
+  }
+  return unsure;
+}
+
 template <int N>
 HWY_INLINE void means_of(FaceBlock<N>& block, double isovalue) {
-  const D d;
-  const Bits bits;
-  std::uint64_t unsure = 0;
-  for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
-    Means means(isovalue);
-    take_means_across(block, i, means);
-    take_means_along(block, i, means);
-    if constexpr (N == 4) take_means_of_rows(block, i, true, means);
-    unsure |= unsure_from(i, hn::Gt(means.least, error_of_means(block, i, isovalue)));
-    hn::Store(means.highs.bits, bits, block.high.data() + i);
-  }
+  const std::uint64_t unsure = decide_block(
+      block, isovalue, [&](const auto& from, std::size_t at) HWY_ATTR { return means_at<N>(from, at, block); });
   // Sums of 16 are then exact.
   set_unsure(block, unsure, true, 0x1p36);
 }
 
 /// Decides squares by their saddles. `least`: smallest absolute determinant.
+template <class D>
 struct Saddles {
-  Highs highs;
+  using T = hn::TFromD<D>;
+  Highs<D> highs;
   hn::Vec<D> least;
 
-  HWY_INLINE Saddles() : least(hn::Set(D(), 0x1p1023)) {}
+  HWY_INLINE Saddles() : least(hn::Set(D(), hwy::HighestValue<T>())) {}
   /// Arguments: corner 0, its two neighbours, and the opposite corner, each minus the isovalue. None is -0.
   template <class V>
   HWY_INLINE void take(unsigned face, V first, V second, V third, V last) {
@@ -214,27 +312,31 @@ struct Saddles {
     least = hn::Min(least, hn::Abs(determinant));
   }
   /// Tiles of which rounding cannot decide a square. `largest`: greatest absolute value of their differences. The
-  /// rounding errors of a determinant, fused or not, are at most 2^-50 of its square, if no product is denormal.
+  /// rounding errors of a determinant of samples, fused or not, are at most 2^-50 of its square, if no product is
+  /// denormal.
+  template <class From>
   HWY_INLINE auto sure(hn::Vec<D> largest) const {
     const D d;
-    const auto in_range = hn::And(hn::Gt(largest, hn::Set(d, 0x1p-480)), hn::Lt(largest, hn::Set(d, 0x1p500)));
-    return hn::And(in_range, hn::Gt(least, hn::Mul(hn::Mul(largest, largest), hn::Set(d, 0x1p-47))));
+    const auto in_range =
+        hn::And(hn::Gt(largest, hn::Set(d, From::kLeastOfSaddles)), hn::Lt(largest, hn::Set(d, From::kMostOfSaddles)));
+    const auto error = hn::Mul(hn::Mul(largest, largest), hn::Set(d, From::kUnitOfSaddles));
+    return hn::And(in_range, hn::Gt(least, error));
   }
 };
 
 /// Returns the greatest absolute value of the corners minus the isovalue.
-template <int N>
-HWY_INLINE auto take_saddles(const FaceBlock<N>& block, std::size_t at, double isovalue, Saddles& saddles) {
+template <int N, class From, class D>
+HWY_INLINE auto take_saddles(const From& from, std::size_t at, Saddles<D>& saddles) {
   static constexpr FaceNumbers<N> kNumbers;
+  using T = hn::TFromD<D>;
   // Adding 0 and not subtracting it makes 0 of -0.
-  const auto minus = hn::Set(D(), isovalue == 0.0 ? 0.0 : -isovalue);
-  const auto difference = [&](std::size_t row, std::size_t to)
-                              HWY_ATTR { return hn::Add(samples_at(block, row, to), minus); };
+  const auto minus = hn::Set(D(), from.isovalue == T{0} ? T{0} : -from.isovalue);
+  const auto difference = [&](std::size_t row, std::size_t to) HWY_ATTR { return hn::Add(from.at(row, to), minus); };
   auto largest = hn::Zero(D());
-  for (unsigned row = 0; row < block.kRows; ++row)
+  for (unsigned row = 0; row < From::kRows; ++row)
     for (unsigned side = 0; side < 2; ++side) largest = hn::Max(largest, hn::Abs(difference(row, at + side)));
   for (unsigned a = 1; a < N; ++a)
-    for (unsigned row = 0; row < block.kRows; ++row) {
+    for (unsigned row = 0; row < From::kRows; ++row) {
       const unsigned up_a = 1u << (a - 1);
       if ((row & up_a) != 0) continue;
       saddles.take(kNumbers.of[1u << a | 1u][row << 1], difference(row, at), difference(row, at + 1),
@@ -251,24 +353,26 @@ HWY_INLINE auto take_saddles(const FaceBlock<N>& block, std::size_t at, double i
   return largest;
 }
 
+/// As means_at.
+template <int N, class From>
+HWY_INLINE auto saddles_at(const From& from, std::size_t at, FaceBlock<N>& block) {
+  Saddles<typename From::D> saddles;
+  const auto largest = take_saddles<N>(from, at, saddles);
+  auto sure = saddles.template sure<From>(largest);
+  if constexpr (N == 4) {
+    Means<typename From::D> means(from.isovalue);
+    take_means_of_rows(from, at, false, means);
+    saddles.highs.bits = hn::Or(saddles.highs.bits, means.highs.bits);
+    sure = hn::And(sure, hn::Gt(means.least, error_of_means(from, at)));
+  }
+  saddles.highs.store(at, block);
+  return sure;
+}
+
 template <int N>
 HWY_INLINE void saddles_of(FaceBlock<N>& block, double isovalue) {
-  const D d;
-  const Bits bits;
-  std::uint64_t unsure = 0;
-  for (std::size_t i = 0; i < block.tiles; i += hn::Lanes(d)) {
-    Saddles saddles;
-    const auto largest = take_saddles(block, i, isovalue, saddles);
-    auto sure = saddles.sure(largest);
-    if constexpr (N == 4) {
-      Means means(isovalue);
-      take_means_of_rows(block, i, false, means);
-      saddles.highs.bits = hn::Or(saddles.highs.bits, means.highs.bits);
-      sure = hn::And(sure, hn::Gt(means.least, error_of_means(block, i, isovalue)));
-    }
-    unsure |= unsure_from(i, sure);
-    hn::Store(saddles.highs.bits, bits, block.high.data() + i);
-  }
+  const std::uint64_t unsure = decide_block(
+      block, isovalue, [&](const auto& from, std::size_t at) HWY_ATTR { return saddles_at<N>(from, at, block); });
   // Differences then have 25 bits, and products 50.
   constexpr double kMost = 0x1p14;
   const bool is_whole = std::abs(isovalue) < kMost && std::nearbyint(0x1p10 * isovalue) == 0x1p10 * isovalue;
@@ -391,31 +495,33 @@ HWY_INLINE void store_transposed(const __m512d (&rows)[8], double* to, std::size
   }
 }
 
-void ask_all(const FaceBlock<3>& block, const std::uint8_t* bits, std::size_t count,
-             const tables::CubeJoin* const* joins, JoinQuestions& questions) {
+void ask_all(const FaceBlock<3>& block, const OpenCubes& cubes, JoinQuestions& questions) {
+  const auto& joins = cube_joins();
   // the corners of one tile are a register, from which its ends are picked
-  for (std::size_t q = 0; q < count; q += 8) {
+  for (std::size_t q = 0; q < cubes.count; q += 8) {
     __m512d rows[8];
     for (std::size_t j = 0; j < 8; ++j) {
-      const std::size_t i = std::min(q + j, count - 1);
-      const auto two = [&](std::size_t row) HWY_ATTR { return _mm_loadu_pd(block.samples[row].data() + bits[i]); };
+      const std::size_t i = std::min(q + j, cubes.count - 1), place = cubes.places[i];
+      const auto two = [&](std::size_t row) HWY_ATTR { return _mm_loadu_pd(block.samples[row].data() + place); };
+      const tables::CubeJoin& join = joins[cubes.entries[i]];
       const __m256d lower = _mm256_insertf128_pd(_mm256_castpd128_pd256(two(0)), two(1), 1);
       const __m256d upper = _mm256_insertf128_pd(_mm256_castpd128_pd256(two(2)), two(3), 1);
-      const __m512i ends = _mm512_cvtepu8_epi64(_mm_loadu_si64(joins[i]->corners.data()));
+      const __m512i ends = _mm512_cvtepu8_epi64(_mm_loadu_si64(join.corners.data()));
       rows[j] = _mm512_permutexvar_pd(ends, _mm512_insertf64x4(_mm512_castpd256_pd512(lower), upper, 1));
-      questions.sign[q + j] = JoinQuestions::kSigns[joins[i]->high];
+      questions.sign[q + j] = JoinQuestions::kSigns[join.high];
     }
     store_transposed(rows, questions.ends[0].data() + q, JoinQuestions::kMost);
   }
-  questions.count = count;
+  questions.count = cubes.count;
 }
 
 #else
 
-void ask_all(const FaceBlock<3>& block, const std::uint8_t* bits, std::size_t count,
-             const tables::CubeJoin* const* joins, JoinQuestions& questions) {
-  for (std::size_t q = 0; q < count; ++q)
-    questions.add(*joins[q], [&](unsigned corner) { return block.samples[corner >> 1][bits[q] + (corner & 1u)]; });
+void ask_all(const FaceBlock<3>& block, const OpenCubes& cubes, JoinQuestions& questions) {
+  const auto& joins = cube_joins();
+  for (std::size_t q = 0; q < cubes.count; ++q)
+    questions.add(joins[cubes.entries[q]],
+                  [&](unsigned corner) { return block.samples[corner >> 1][cubes.places[q] + (corner & 1u)]; });
 }
 
 #endif
@@ -442,9 +548,8 @@ HWY_EXPORT(saddles4);
 
 HWY_EXPORT(ask_all);
 
-void ask(const FaceBlock<3>& block, std::span<const std::uint8_t> bits, const tables::CubeJoin* const* joins,
-         JoinQuestions& questions) noexcept {
-  HWY_DYNAMIC_DISPATCH(ask_all)(block, bits.data(), bits.size(), joins, questions);
+void ask(const FaceBlock<3>& block, const OpenCubes& cubes, JoinQuestions& questions) noexcept {
+  HWY_DYNAMIC_DISPATCH(ask_all)(block, cubes, questions);
 }
 
 void answer(JoinQuestions& questions, double isovalue) noexcept {

@@ -8,8 +8,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <type_traits>
 
+#include "ambiguity/cube_words.hpp"
 #include "image/bitplanes.hpp"
 #include "tegl/table_contract.hpp"
 
@@ -32,7 +33,8 @@ struct FaceBlock {
   alignas(64) std::array<std::array<double, kPitch>, kRows> samples;
   std::size_t tiles = 0;
   /// By tile: bit f is set if face f is high. Undefined for unambiguous faces.
-  alignas(64) std::array<std::uint64_t, kPitch> high;
+  using Faces = std::conditional_t<N == 3, std::uint8_t, std::uint64_t>;
+  alignas(64) std::array<Faces, kPitch> high;
   /// By tile: bit i is set if rounding could decide a face of tile i. No others are.
   std::uint64_t unsure = 0;
 };
@@ -66,9 +68,8 @@ struct JoinQuestions {
 
   static constexpr std::array<double, 2> kSigns = {-1.0, 1.0};  ///< by CubeJoin::high, which is hard to predict
 };
-/// Asks about tiles of a block. `bits`: their positions.
-void ask(const FaceBlock<3>& block, std::span<const std::uint8_t> bits, const tables::CubeJoin* const* joins,
-         JoinQuestions& questions) noexcept;
+/// Asks about cubes of a block that have one pair of edges.
+void ask(const FaceBlock<3>& block, const OpenCubes& cubes, JoinQuestions& questions) noexcept;
 void answer(JoinQuestions& questions, double isovalue) noexcept;
 
 }  // namespace tegl::detail

@@ -352,8 +352,9 @@ class ListedCells {
   /// what is kept are places among the distinct points.
   RecognisedPolytope recognise(std::size_t c, const PolytopeLists& lists) {
     std::vector<Index> distinct;
-    std::vector<std::uint64_t> key(lists.face_ends.begin(), lists.face_ends.end());
-    key.push_back(lists.facet_ends.size());
+    // Both lists follow their lengths, so different ones have different keys.
+    std::vector<std::uint64_t> key = {lists.face_ends.size(), lists.facet_ends.size()};
+    key.insert(key.end(), lists.face_ends.begin(), lists.face_ends.end());
     key.insert(key.end(), lists.facet_ends.begin(), lists.facet_ends.end());
     for (const Index p : lists.corners) {
       const auto at = static_cast<std::size_t>(std::find(distinct.begin(), distinct.end(), p) - distinct.begin());

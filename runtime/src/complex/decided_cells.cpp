@@ -376,15 +376,8 @@ class DecidedCells::Filler {
   /// Adds copies of regions, and removes the components beside them. `sets`: of find_regions.
   template <class IsCopied>
   void copy(DisjointSets& sets, const IsCopied& is_copied, Components& components) {
-    Component boundary;
-    for (auto at = components.begin(); at != components.end();) {
-      if (!is_copied(sets.find(at->second.front().triangle[0]))) {
-        ++at;
-        continue;
-      }
-      boundary.insert(boundary.end(), at->second.begin(), at->second.end());
-      at = components.erase(at);
-    }
+    const Component boundary = take_components(
+        components, [&](const Component& component) { return is_copied(sets.find(first_of(component))); });
     std::vector<Tetrahedron> copied;
     std::copy_if(regions_.begin(), regions_.end(), std::back_inserter(copied),
                  [&](const Tetrahedron& t) { return is_copied(sets.find(t[0])); });
@@ -448,7 +441,7 @@ class DecidedCells::Filler {
     for (unsigned j = 0; j < 4; ++j) {
       const auto centre = static_cast<Local>(first_own_[f] + j);  // of the quadrilateral
       std::uint64_t sector = built_.shared[centre - kShared];
-      std::vector<Triangle> around;
+      std::vector<Triangle> walls;
       for (unsigned v = 0; v < corners_; ++v) {  // the walls to both neighbours
         Triangle wall{static_cast<Local>(kCorners + v), 0, 0};
         std::size_t count = 1;
@@ -460,15 +453,10 @@ class DecidedCells::Filler {
         if (count < 3 || lone == (static_cast<tile::Choice>(key_->cubes >> 2 * f & 3u) == tile::Choice::high ? 1u : 0u))
           continue;
         sector |= bit_of(wall[0]);
-        around.push_back(wall);
+        walls.push_back(wall);
       }
       const auto is_in = [&](Local v) { return (sector & bit_of(v)) != 0; };
-      for (const Triangle& t : sides.triangles)
-        if (std::all_of(t.begin(), t.end(), is_in)) around.push_back(t);
-      for (const Triangle& t : sides.of_contour)
-        if (has_vertex(t, centre)) around.push_back(t);
-      const Local apex = add_centre(sector);
-      for (const Triangle& t : around) regions_.push_back({t[0], t[1], t[2], apex});
+      cone_sector(sides, walls, centre, is_in, add_centre(sector), regions_);
     }
   }
 

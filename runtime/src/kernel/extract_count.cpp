@@ -262,13 +262,14 @@ class TileResolver {
     room_.signatures[i] = static_cast<std::uint16_t>(key);
   }
 
-  /// Resolves these tiles, all in one word, together. N = 3.
-  void resolve_together(RowFaces<N>& faces, std::size_t word, std::span<const std::uint32_t> numbers) {
-    TilesOfWord tiles{numbers.data(), numbers.size(), room_.at, room_.signatures};
-    Word unsure = detail::resolve(estimator_, table_, faces.look_at(word), tiles);
-    count_.simplices += static_cast<std::uint64_t>(std::int64_t{tiles.more_simplices});
-    count_.own_vertices += static_cast<std::uint32_t>(tiles.more_own_vertices);
-    for (; unsure != 0; unsure &= unsure - 1) resolve(numbers[static_cast<unsigned>(std::countr_zero(unsure))], word);
+  /// Resolves the ambiguous ones of `active` tiles from number `first` on, which are all tiles of a word, together.
+  /// N = 3. `ambiguous`: bit i for tile first + i.
+  void resolve_together(RowFaces<N>& faces, std::size_t word, std::uint32_t first, Word ambiguous) {
+    CubesOfWord cubes{room_.active[word], ambiguous, room_.at + first, room_.signatures + first};
+    Word unsure = detail::resolve(estimator_, table_, faces.look_at(word), cubes);
+    count_.simplices += static_cast<std::uint64_t>(std::int64_t{cubes.more_simplices});
+    count_.own_vertices += static_cast<std::uint32_t>(cubes.more_own_vertices);
+    for (; unsure != 0; unsure &= unsure - 1) resolve(first + static_cast<unsigned>(std::countr_zero(unsure)), word);
   }
 
  private:
@@ -291,39 +292,46 @@ template <int N>
     base[N - 1] = view.k;
     TileResolver<N> resolver(*estimator_, *rows_, base, room, count);
     const bool is_listed = shape_.size(0) <= kMostListed;
-    // calls visit(word, numbers of its ambiguous tiles)
+    BitWalk walk(room.active);
+    // calls visit(word, number of its first tile, its ambiguous tiles by number from this on)
     const auto for_words = [&](const auto& visit) {
-      std::array<std::uint32_t, kWordBits> found;
-      std::size_t many = 0, word = 0;
-      BitWalk walk(room.active);
       for (std::uint32_t first = 0; first < count.active; first += kWordBits) {
-        const std::size_t tiles = std::min<std::size_t>(count.active - first, kWordBits);
-        for (Word rest = members_of(ambiguous_, room.signatures + first, tiles); rest != 0; rest &= rest - 1) {
-          const std::uint32_t i = first + static_cast<std::uint32_t>(std::countr_zero(rest));
-          const std::size_t at = (is_listed ? room.at[i] : walk.place_of(i)) / kWordBits;
-          if (at != word) {
-            if (many != 0) visit(word, std::span<const std::uint32_t>(found.data(), many));
-            many = 0;
-            word = at;
+        const auto members = [&] {
+          return members_of(ambiguous_, room.signatures + first,
+                            std::min<std::size_t>(count.active - first, kWordBits));
+        };
+        Word rest = members();
+        while (rest != 0) {
+          // the word of the next ambiguous tile, and its tiles
+          const std::uint32_t next = first + static_cast<std::uint32_t>(std::countr_zero(rest));
+          const std::size_t at = is_listed ? room.at[next] : walk.place_of(next), word = at / kWordBits;
+          const Word before = room.active[word] & ((Word{1} << (at % kWordBits)) - 1);
+          const std::uint32_t start = next - few_bits(before);
+          const auto tiles = static_cast<std::uint32_t>(std::popcount(room.active[word]));
+          if (start < first || start + tiles > first + kWordBits) {  // not all among those looked at
+            first = start;
+            rest = members();
           }
-          found[many++] = i;
+          const Word of_word = (~Word{0} >> (kWordBits - tiles)) << (start - first);
+          visit(word, start, (rest & of_word) >> (start - first));
+          rest &= ~of_word;
         }
       }
-      if (many != 0) visit(word, std::span<const std::uint32_t>(found.data(), many));
     };
-    const auto resolve_each = [&](std::size_t word, std::span<const std::uint32_t> numbers) {
-      for (const std::uint32_t i : numbers) resolver.resolve(i, word);
+    const auto resolve_each = [&](std::size_t word, std::uint32_t first, Word ambiguous) {
+      for (; ambiguous != 0; ambiguous &= ambiguous - 1)
+        resolver.resolve(first + static_cast<std::uint32_t>(std::countr_zero(ambiguous)), word);
     };
     if constexpr (N == 2) {
       for_words(resolve_each);
     } else {
       RowFaces<N> faces(*estimator_, base, shape_.size(0));
       const bool at_once = RowFaces<N>::can_use(*estimator_);
-      for_words([&](std::size_t word, std::span<const std::uint32_t> numbers) {
-        if (at_once && numbers.size() >= kMany)
-          resolver.resolve_together(faces, word, numbers);
+      for_words([&](std::size_t word, std::uint32_t first, Word ambiguous) {
+        if (at_once && static_cast<std::size_t>(std::popcount(ambiguous)) >= kMany)
+          resolver.resolve_together(faces, word, first, ambiguous);
         else
-          resolve_each(word, numbers);
+          resolve_each(word, first, ambiguous);
       });
     }
   }

@@ -41,15 +41,8 @@ void SolidCell::copy_regions(bool high, Components& components) {
     if (has_tunnel(f) && components_in(f, components) > 1) passing.clear();
   if (!passing.empty()) pass_spheres(high, sets, passing, components);
   for (const Index region : passing) is_copied[region] = false;
-  Component boundary;
-  for (auto at = components.begin(); at != components.end();) {
-    if (!is_copied[region_of(at->second)]) {
-      ++at;
-      continue;
-    }
-    boundary.insert(boundary.end(), at->second.begin(), at->second.end());
-    at = components.erase(at);
-  }
+  const Component boundary =
+      take_components(components, [&](const Component& component) { return is_copied[region_of(component)]; });
   std::vector<Tetrahedron> copied;
   std::copy_if(regions_.begin(), regions_.end(), std::back_inserter(copied),
                [&](const Tetrahedron& t) { return is_copied[sets.find(t[0])]; });
@@ -172,15 +165,9 @@ void SolidCell::add_ring(std::size_t f, const RegionSides<Local>& sides) {
     const Local from = corner(around[0]), to = corner(around[1]);
     std::vector<Local> sector = around;
     sector.insert(sector.end(), {from, to});
-    std::vector<Triangle> boundary = {{from, around[0], around[3]}, {to, around[1], around[2]}};
-    for (const Triangle& t : sides.triangles)
-      if (std::all_of(t.begin(), t.end(),
-                      [&](Local v) { return std::find(sector.begin(), sector.end(), v) != sector.end(); }))
-        boundary.push_back(t);
-    for (const Triangle& t : sides.of_contour)
-      if (has_vertex(t, centre)) boundary.push_back(t);
-    const Local apex = add_centre(sector);
-    for (const Triangle& t : boundary) regions_.push_back({t[0], t[1], t[2], apex});
+    const std::vector<Triangle> walls = {{from, around[0], around[3]}, {to, around[1], around[2]}};
+    const auto is_in = [&](Local v) { return std::find(sector.begin(), sector.end(), v) != sector.end(); };
+    cone_sector(sides, walls, centre, is_in, add_centre(sector), regions_);
   }
 }
 

@@ -81,6 +81,19 @@ void cone_regions(const RegionSides<Local>& sides, Local first_corner, Local end
   }
 }
 
+/// Cones a sector of the region around a tunnel from `apex`: its walls to both neighbours, the triangles of the sides'
+/// parts whose vertices are all in the sector, `is_in(v)`, and those of the contour around `centre`. Appends to `to`.
+template <class Local, class IsIn>
+void cone_sector(const RegionSides<Local>& sides, const std::vector<std::array<Local, 3>>& walls, Local centre,
+                 const IsIn& is_in, Local apex, std::vector<std::array<Local, 4>>& to) {
+  const auto add = [&](const std::array<Local, 3>& t) { to.push_back({t[0], t[1], t[2], apex}); };
+  for (const auto& t : walls) add(t);
+  for (const auto& t : sides.triangles)
+    if (std::all_of(t.begin(), t.end(), is_in)) add(t);
+  for (const auto& t : sides.of_contour)
+    if (has_vertex(t, centre)) add(t);
+}
+
 /// Fills the space between two triangulations of the same polygons. Each is a fan from a corner, the middle one of
 /// three, so they differ in single diagonals of four vertices, which are the corners of a tetrahedron. It lies in the
 /// hyperplane between the copies of both facets, whichever diagonal is nearer to the centre. `a`, `b`: ascending.

@@ -34,6 +34,19 @@ std::ptrdiff_t components_in(std::size_t facet, const std::map<Index, std::vecto
   });
 }
 
+/// Removes the components for which `is_copied(component)`, and returns their pieces.
+template <class Local, class IsCopied>
+std::vector<SigmaPiece<Local>> take_components(std::map<Index, std::vector<SigmaPiece<Local>>>& components,
+                                               const IsCopied& is_copied) {
+  std::vector<SigmaPiece<Local>> taken;
+  std::erase_if(components, [&](const auto& each) {
+    if (!is_copied(each.second)) return false;
+    taken.insert(taken.end(), each.second.begin(), each.second.end());
+    return true;
+  });
+  return taken;
+}
+
 /// Regions of both sides, joined across the components of Sigma between them, except the spheres beside one region.
 /// Each component divides the boundary of the cell, so what is behind these spheres is apart from the region.
 class RegionParts {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Batched decisions on the faces of many tiles (face_signs.hpp) against exact single decisions.
+// Batched decisions on the faces of many tiles (face_signs.hpp, cube_words.hpp) against single decisions.
 #include "ambiguity/face_signs.hpp"
 
 #include <gtest/gtest.h>
@@ -16,11 +16,13 @@
 #include <vector>
 
 #include "ambiguity/connected_sides.hpp"
+#include "ambiguity/cube_words.hpp"
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/saddle.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tile/tesseract_fill.hpp"
+#include "tile/variant_table.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -282,6 +284,72 @@ TEST(BoundarySides, AreConnectedIfTheContourBetweenThemIs) {
   }
   EXPECT_GT(connected, 10'000u);
   EXPECT_GT(with_spheres, 1'000u);
+}
+
+/// Expects that the open cubes are those with one pair of edges, or with more: `entries` by number among the active
+/// tiles.
+void expect_open(const OpenCubes& open, bool has_one_pair, const std::vector<unsigned>& entries,
+                 const CubesOfWord& cubes) {
+  std::size_t i = 0;
+  for (unsigned number = 0; number < entries.size(); ++number) {
+    const unsigned pairs = cube_joins()[entries[number]].pairs;
+    if ((cubes.ambiguous >> number & 1u) == 0 || pairs == 0 || (pairs == 1) != has_one_pair) continue;
+    ASSERT_LT(i, open.count);
+    EXPECT_EQ(open.numbers[i], number);
+    EXPECT_EQ(open.places[i], cubes.at[number] % kWordBits);
+    EXPECT_EQ(open.entries[i++], entries[number]);
+  }
+  EXPECT_EQ(i, open.count);
+}
+
+TEST(CubeWords, VariantsAreThoseOfEachCubeByItself) {
+  std::mt19937_64 random(6);
+  std::size_t with_one = 0, with_more = 0;
+  for (int round = 0; round < 12'000; ++round) {
+    const RowTable& table = variant_table<3>(round % 2 == 0 ? Triangulation::compact : Triangulation::barycentric).rows;
+    const auto rule = static_cast<CentreRule>(round / 2 % 3);
+    alignas(64) std::array<std::uint8_t, kWordBits> high;
+    for (std::uint8_t& faces : high) faces = static_cast<std::uint8_t>(random() & 127u);
+    // active tiles, from few to all
+    CubesOfWord cubes{random() | (round % 5 == 0 ? ~Word{0} : random()), 0, nullptr, nullptr};
+    if (round % 7 == 0) cubes.active &= random() & random();
+    if (cubes.active == 0) continue;
+    std::array<std::uint16_t, 2 * kWordBits> at{}, keys;
+    for (std::uint16_t& key : keys) key = static_cast<std::uint16_t>(1 + random() % 254);
+    unsigned count = 0;
+    for (unsigned place = 0; place < kWordBits; ++place)
+      if ((cubes.active >> place & 1u) != 0) at[count++] = static_cast<std::uint16_t>(64 * (round % 3) + place);
+    for (unsigned i = 0; i < count; ++i) cubes.ambiguous |= Word{ambiguous_signatures<3>()[keys[i]]} << i;
+    if (cubes.ambiguous == 0) continue;
+    const auto before = keys;
+    cubes.at = at.data();
+    cubes.keys = keys.data();
+    CubesByPairs open;
+    choose_variants(high.data(), table.variants, rule, cubes, open);
+    std::int32_t simplices = 0, own_vertices = 0;
+    std::vector<unsigned> entries(count);
+    for (unsigned i = 0; i < keys.size(); ++i) {
+      if (i >= count || (cubes.ambiguous >> i & 1u) == 0) {
+        ASSERT_EQ(before[i], keys[i]) << i;
+        continue;
+      }
+      const unsigned faces = high[at[i] % kWordBits];
+      entries[i] = entry_of(before[i], faces & 63u);
+      const Variant& variant = table.variant(entries[i], rule == CentreRule::by_bit ? 1 + (faces >> 6) : 0);
+      ASSERT_EQ(variant.key, keys[i]) << i;
+      simplices += variant.more_simplices;
+      own_vertices += variant.more_own_vertices;
+    }
+    EXPECT_EQ(simplices, cubes.more_simplices);
+    EXPECT_EQ(own_vertices, cubes.more_own_vertices);
+    if (rule != CentreRule::by_joins) continue;
+    expect_open(open.with_one, true, entries, cubes);
+    expect_open(open.with_more, false, entries, cubes);
+    with_one += open.with_one.count;
+    with_more += open.with_more.count;
+  }
+  EXPECT_GT(with_one, 1000u);
+  EXPECT_GT(with_more, 30u);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 #include "fields.hpp"
 #include "tegl/check.hpp"
 #include "tegl/extract.hpp"
+#include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/stream.hpp"
 
@@ -144,6 +145,30 @@ TEST(OutOfMemory, IsSurvivedIn5d) {
             5);
 }
 TEST(OutOfMemory, IsSurvivedBySeveralThreads) { expect_all_ways_survive<3>({30, 20, 9}, 3); }
+
+TEST(OutOfMemory, IsSurvivedBySimplification) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "the thread sanitizer has its own memory";
+#endif
+  const auto image = sample_field<float, 3>(centred_grid<3>(9, 1.0), Ball<3>{{}, 0.7});
+  const auto contour = extract<float>(image.view(), 0.0, {});
+  for (const unsigned threads : {1u, 3u})
+    for (const bool measure : {false, true}) {
+      SimplifyOptions<3> options;
+      options.work.threads = threads;
+      options.measure = measure;
+      if (measure)
+        options.max_error = 0.05;
+      else
+        options.ratio = 0.5;
+      const auto simplified = [&] { return simplify(contour, options).contour; };
+      ASSERT_LT(simplified().simplices.size(), contour.simplices.size());
+      EXPECT_GT(expect_survives(
+                    measure ? "simplify to an error" : "simplify to a count", [&] { return digest(simplified()); },
+                    threads == 1),
+                20);
+    }
+}
 
 #ifdef __linux__
 /// Contours so large that the system supplies their memory in large blocks, reserved beforehand or grown.

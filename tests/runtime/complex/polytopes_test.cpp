@@ -113,35 +113,20 @@ TEST(Polytopes, ContoursByRulesOfTheDataHaveTheTopologyOfTheEngine) {
         std::vector<double> values = random_values(points.size(), seed);
         // few corners on one side, so that octahedra with two of them occur
         for (double& value : values) value -= seed % 3 == 0 ? 0.5 : seed % 3 == 1 ? 0.2 : 0.8;
-        tile::Signature signature = 0;
-        for (std::size_t v = 0; v < values.size(); ++v) signature |= tile::Signature{values[v] >= 0.0} << v;
+        const tile::Signature signature = signature_of(values);
         if (signature == 0 || signature + 1 == tile::Signature{1} << values.size()) continue;
-        std::vector<tile::Choice> choices(faces.size(), tile::Choice::separate);
-        for (std::size_t f = 0; f < faces.size(); ++f) {
-          const bool is_decided =
-              faces[f].dim == 2 || (faces[f].dim == 3 && rule == Ambiguity::mean && is_cube_or_cross(faces[f], faces));
-          double sum = 0.0;
-          for (std::size_t v = 0; v < values.size(); ++v) sum += (faces[f].corners >> v & 1u) != 0 ? values[v] : 0.0;
-          if (is_decided) choices[f] = sum >= 0.0 ? tile::Choice::high : tile::Choice::low;
-        }
+        const auto choices = choices_by_means(faces, values, [&](const tile::Face& face) {
+          return face.dim == 2 || (face.dim == 3 && rule == Ambiguity::mean && is_cube_or_cross(face, faces));
+        });
         const CellContourOf expected = contour_by_engine(engine, signature, {choices, tile::Alternative::low});
-        for (const bool is_compact : {false, true}) {
-          detail::PolytopeRules rules;
-          rules.rule = detail::face_rule(rule);
-          rules.is_compact = is_compact;
-          detail::SolidCell cell(rules);
-          cell.build(polytopes.shape(0), polytopes.cell(0), values.data());
-          const CellContourOf contour = contour_by_library(cell, polytopes.shape(0));
-          EXPECT_EQ(expected.euler(), contour.euler()) << signature;
-          EXPECT_EQ(components_of(expected), components_of(contour)) << signature;
+        compare_topology(expected, polytopes, rule, values, [&](const CellContourOf& contour) {
           // the contour in the boundary of the cell is closed
           std::map<std::array<std::size_t, 2>, int> sides;
           for (const auto& [t, sign] : contour.open_triangles())
-            for (std::size_t i = 0; i < 3; ++i)
-              sides[{t[i == 0 ? 1 : 0], t[i == 2 ? 1 : 2]}] += i == 1 ? -sign : sign;
+            for (std::size_t i = 0; i < 3; ++i) sides[{t[i == 0 ? 1 : 0], t[i == 2 ? 1 : 2]}] += i == 1 ? -sign : sign;
           for (const auto& [side, sum] : sides) EXPECT_EQ(0, sum) << signature;
           joined += expected.has_sides ? 1 : 0;
-        }
+        });
       }
   }
   EXPECT_GT(joined, 100u);

@@ -211,40 +211,62 @@ inline std::size_t compare_with_engine(const detail::Polytopes& polytopes, tile:
   return sides;
 }
 
+/// The corners with values of at least 0, as bits.
+inline tile::Signature signature_of(const std::vector<double>& values) {
+  tile::Signature signature = 0;
+  for (std::size_t v = 0; v < values.size(); ++v) signature |= tile::Signature{values[v] >= 0.0} << v;
+  return signature;
+}
+
+/// Choices by the means of the corners for the faces that `is_decided(face)`; the others are separate.
+template <class IsDecided>
+std::vector<tile::Choice> choices_by_means(const std::vector<tile::Face>& faces, const std::vector<double>& values,
+                                           const IsDecided& is_decided) {
+  std::vector<tile::Choice> choices(faces.size(), tile::Choice::separate);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (!is_decided(faces[f])) continue;
+    double sum = 0.0;
+    for (std::size_t v = 0; v < values.size(); ++v) sum += (faces[f].corners >> v & 1u) != 0 ? values[v] : 0.0;
+    choices[f] = sum >= 0.0 ? tile::Choice::high : tile::Choice::low;
+  }
+  return choices;
+}
+
+/// Expects the topology of `expected` of the contours of a 4D polytope, barycentric and compact, and calls
+/// `visit(contour)` for both.
+template <class Visit>
+void compare_topology(const CellContourOf& expected, const detail::Polytopes& polytopes, Ambiguity rule,
+                      const std::vector<double>& values, const Visit& visit) {
+  detail::PolytopeRules rules;
+  rules.rule = detail::face_rule(rule);
+  for (const bool is_compact : {false, true}) {
+    rules.is_compact = is_compact;
+    detail::SolidCell cell(rules);
+    cell.build(polytopes.shape(0), polytopes.cell(0), values.data());
+    const CellContourOf contour = contour_by_library(cell, polytopes.shape(0));
+    EXPECT_EQ(expected.euler(), contour.euler()) << signature_of(values);
+    EXPECT_EQ(components_of(expected), components_of(contour)) << signature_of(values);
+    visit(contour);
+  }
+}
+
 /// Compares the topology of a 4D polytope with random values by the rule that decides each polygon by its mean, and
 /// joins nothing else. Returns in how many the engine copies a side and cones a sphere.
 inline std::size_t compare_separate_components(const detail::Polytopes& polytopes, tile::FacetBuilder& builder,
                                                std::size_t count) {
   const std::size_t corners = polytopes.shape(0).corner_count();
-  const std::vector<tile::Face>& of_lattice = builder.lattice().faces();
   std::mt19937_64 random(corners);
   std::size_t mixed = 0;
-  detail::PolytopeRules rules;
-  rules.rule = detail::face_rule(Ambiguity::squares);
   for (std::size_t c = 0; c < count; ++c) {
     std::vector<double> values(corners);
-    tile::Signature signature = 0;
-    for (std::size_t v = 0; v < values.size(); ++v) {
-      values[v] = static_cast<double>(random() >> 11) * 0x1p-52 - 1.0;
-      signature |= tile::Signature{values[v] >= 0.0} << v;
-    }
-    std::vector<tile::Choice> choices(of_lattice.size(), tile::Choice::separate);
-    for (std::size_t f = 0; f < of_lattice.size(); ++f) {
-      double sum = 0.0;
-      for (std::size_t v = 0; v < values.size(); ++v) sum += (of_lattice[f].corners >> v & 1u) != 0 ? values[v] : 0.0;
-      if (of_lattice[f].dim == 2) choices[f] = sum >= 0.0 ? tile::Choice::high : tile::Choice::low;
-    }
-    const CellContourOf expected = contour_by_engine(builder, signature, {choices, tile::Alternative::low});
+    for (double& value : values) value = static_cast<double>(random() >> 11) * 0x1p-52 - 1.0;
+    const auto choices =
+        choices_by_means(builder.lattice().faces(), values, [](const tile::Face& face) { return face.dim == 2; });
+    const CellContourOf expected = contour_by_engine(builder, signature_of(values), {choices, tile::Alternative::low});
     mixed += expected.has_sides && expected.has_cones ? 1 : 0;
-    for (const bool is_compact : {false, true}) {
-      rules.is_compact = is_compact;
-      detail::SolidCell cell(rules);
-      cell.build(polytopes.shape(0), polytopes.cell(0), values.data());
-      const CellContourOf contour = contour_by_library(cell, polytopes.shape(0));
-      EXPECT_EQ(expected.euler(), contour.euler()) << signature;
-      EXPECT_EQ(components_of(expected), components_of(contour)) << signature;
+    compare_topology(expected, polytopes, Ambiguity::squares, values, [](const CellContourOf& contour) {
       (void)contour.boundary(false);  // tests the neighbours of triangles
-    }
+    });
   }
   return mixed;
 }

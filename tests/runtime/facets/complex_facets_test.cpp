@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -162,6 +164,54 @@ TEST(ComplexFacets, HaveTheTopologyOfTheContourOnAllMeshes) {
   ExtractOptions closed;
   closed.close = true;
   expect_facets_of_contour(plane, 0.5, closed);
+}
+
+/// Distance of a point from the segment between two others.
+double distance_from(const std::array<double, 3>& p, const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  double along = 0.0, square = 0.0, result = 0.0;
+  for (int k = 0; k < 3; ++k) along += (p[k] - a[k]) * (b[k] - a[k]), square += (b[k] - a[k]) * (b[k] - a[k]);
+  const double t = std::clamp(along / square, 0.0, 1.0);
+  for (int k = 0; k < 3; ++k) result = std::hypot(result, p[k] - a[k] - t * (b[k] - a[k]));
+  return result;
+}
+
+TEST(ComplexFacets, CapsOfMixedMeshesBelongToTheCellsThatTheyAreIn) {
+  const MeshData<3> mesh = mixed_mesh(grid_points<3>({6, 6, 6}, 0.15), 5);
+  Complex<3> complex = mesh.complex();
+  complex.set_values(values_at_random(mesh, 8));
+  // the corners of the cells in the order of their numbers: by type
+  std::vector<std::pair<CellType, std::span<const Index>>> cells;
+  for (const CellType wanted : {CellType::tetrahedron, CellType::wedge, CellType::pyramid, CellType::hexahedron}) {
+    std::size_t first = 0;
+    for (const CellType type : mesh.types) {
+      if (type == wanted) cells.emplace_back(type, std::span(mesh.corners).subspan(first, corner_count(type)));
+      first += corner_count(type);
+    }
+  }
+  ASSERT_EQ(cells.size(), mesh.types.size());
+  for (const Ambiguity rule : kAllRules) {
+    ExtractOptions options;
+    options.ambiguity = rule;
+    options.close = true;
+    const auto facets = extract_facets<double>(complex, 0.5, options);
+    std::set<CellType> types;
+    for (std::size_t f = 0; f < facets.count(2); ++f) {
+      const FacetPlace& place = facets.levels[2].places[f];
+      if (!place.is_cap) continue;
+      ASSERT_LT(place.base, cells.size());
+      const auto& [type, corners] = cells[place.base];
+      types.insert(type);
+      for (const Index p : facets.points_of(2, f)) {  // on an edge of the cell
+        double distance = HUGE_VAL;
+        for (const Index a : corners)
+          for (const Index b : corners)
+            if (a != b)
+              distance = std::min(distance, distance_from(facets.vertices[p], mesh.points[a], mesh.points[b]));
+        EXPECT_LT(distance, 1e-12) << "cell " << place.base << ", rule " << static_cast<int>(rule);
+      }
+    }
+    EXPECT_GT(types.size(), 2u);
+  }
 }
 
 /// Noise at three times, also at the border.

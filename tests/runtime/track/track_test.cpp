@@ -3,9 +3,15 @@
 // The graph of components over time for fields with known events, and its options.
 #include "tegl/track.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
+#include <random>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -445,6 +451,52 @@ TEST(Track, DoesNotDependOnThreadsOrOnTheOrderOfSimplices) {
   EXPECT_GT(alone.size(), 500u);
   EXPECT_EQ(summary(4), alone);
   EXPECT_EQ(summary(3), alone);
+}
+
+TEST(Track, EventsOfOneTimeAreInTheOrderOfTheirVertices) {
+  // Pairs of parts that begin at one time, merge at one time and end at one time.
+  constexpr std::size_t kPairs = 7;
+  std::mt19937_64 random(5);
+  std::vector<Index> numbers(4 * kPairs);
+  std::iota(numbers.begin(), numbers.end(), Index{0});
+  std::shuffle(numbers.begin(), numbers.end(), random);
+  Contour<2, double> contour;
+  contour.vertices.resize(numbers.size());
+  for (std::size_t i = 0; i < kPairs; ++i) {
+    const Index* const v = numbers.data() + 4 * i;
+    const double x = 3.0 * static_cast<double>(i);
+    contour.vertices[v[0]] = {x - 1, 0};
+    contour.vertices[v[1]] = {x + 1, 0};
+    contour.vertices[v[2]] = {x, 1};
+    contour.vertices[v[3]] = {x, 2};
+    for (const auto& [a, b] : {std::pair{0, 2}, std::pair{1, 2}, std::pair{2, 3}})
+      contour.simplices.push_back({v[a], v[b]});
+  }
+  const auto summary = [&](unsigned threads) {
+    TrackOptions options;
+    options.work.threads = threads;
+    const TrackGraph graph = track(contour, options);
+    EXPECT_EQ(graph.events.size(), numbers.size());
+    EXPECT_TRUE(std::is_sorted(graph.events.begin(), graph.events.end(), [](const auto& a, const auto& b) {
+      return std::tuple(a.time, a.vertex) < std::tuple(b.time, b.vertex);
+    }));
+    std::vector<std::vector<double>> all;
+    for (const TrackEvent& event : graph.events) {
+      auto& of = all.emplace_back(std::vector{event.time, double(event.vertex), double(int(event.kind))});
+      of.insert(of.end(), event.in.begin(), event.in.end());
+      of.insert(of.end(), event.out.begin(), event.out.end());
+    }
+    for (const TrackSegment& segment : graph.segments)
+      all.push_back({double(segment.from), double(segment.to), double(segment.track)});
+    for (const Track& each : graph.tracks) all.emplace_back(each.segments.begin(), each.segments.end());
+    return all;
+  };
+  const auto expected = summary(1);
+  for (unsigned round = 0; round < 5; ++round) {
+    std::shuffle(contour.simplices.begin(), contour.simplices.end(), random);
+    EXPECT_EQ(expected, summary(1)) << round;
+    EXPECT_EQ(expected, summary(3)) << round;
+  }
 }
 
 TEST(Track, SelectsTracks) {
