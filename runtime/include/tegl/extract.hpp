@@ -98,14 +98,14 @@ requires DimensionBetween<N, 2, 5>
 /// Extracts the contour {value = isovalue} of an image. It separates samples >= isovalue (high) from the others.
 ///
 /// The contour is an oriented manifold whatever the values. It has a boundary only at the image border and at missing
-/// values. If tiles next to missing values share only an edge or a square of the grid, the vertices there are doubled
-/// at the same position, so the contour is a manifold there too. Vertices of a 4D or 5D contour between two layers of
+/// values. If tiles beside these share only faces of lower dimension, vertices there are doubled in place, so that the
+/// contour is a manifold there too; in 5D by few cuts. Vertices of a 4D or 5D contour between two layers of
 /// the last axis (in 5D of the last two) are kept off the layers by the smallest step of Real, so `slice` at a layer's
 /// coordinate gives that layer's contour even if samples equal the isovalue. An image with an axis of one sample has no
 /// tiles and an empty contour.
 ///
-/// Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled; UnsupportedData for 5D images
-/// with missing values. Time: one pass over the samples, plus the output. Working memory up to 4D: 1/16 of the size of
+/// Errors: InvalidIsovalue (not finite), InvalidArgument (epsilon), TooLarge, Cancelled. Time: one pass over the
+/// samples, plus the output. Working memory up to 4D: 1/16 of the size of
 /// a float image, or 128 KiB (192 KiB in 4D with ambiguities resolved from the data) if that is more, and at least the
 /// bits and lists of one slab (docs/cost.md). Real: float or double.
 ///

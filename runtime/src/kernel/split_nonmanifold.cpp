@@ -16,7 +16,9 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/periods.hpp"
+#include "base/workers.hpp"
 #include "kernel/contour_output.hpp"
+#include "tile/link_balls.hpp"
 
 namespace tegl::detail {
 
@@ -79,8 +81,9 @@ namespace {
 template <int N, class Real>
 class NonmanifoldSplitter {
  public:
-  NonmanifoldSplitter(Contour<N, Real>& contour, std::vector<Index> candidates, std::uint64_t max_vertices)
-      : contour_(contour), candidates_(std::move(candidates)), max_vertices_(max_vertices) {}
+  NonmanifoldSplitter(Contour<N, Real>& contour, std::vector<Index> candidates, std::uint64_t max_vertices,
+                      unsigned threads)
+      : contour_(contour), candidates_(std::move(candidates)), max_vertices_(max_vertices), threads_(threads) {}
 
   void run() {
     gather_stars();
@@ -91,6 +94,22 @@ class NonmanifoldSplitter {
       gather_stars();
       while (split_edges()) gather_stars();
       while (separate_holes()) gather_stars();
+    }
+    if constexpr (N == 5) {
+      std::size_t known = vertices;
+      const auto take_new = [&] {
+        for (; known < contour_.vertices.size(); ++known) candidates_.push_back(static_cast<Index>(known));
+        gather_stars();
+      };
+      take_new();
+      while (split_edges()) take_new();
+      while (split_triangles()) take_new();
+      while (separate_holes_at_edges()) take_new();
+      while (separate_holes()) take_new();
+      while (!candidates_.empty()) {
+        candidates_ = separate_balls();
+        gather_stars();
+      }
     }
   }
 
@@ -122,6 +141,18 @@ class NonmanifoldSplitter {
     Index from;
     Index to;
     std::vector<Index> simplices;
+  };
+  /// A fan of simplices around a triangle, in 5D.
+  struct TriangleFan {
+    std::array<Index, 3> triangle;
+    std::vector<Index> simplices;
+  };
+  /// A simplex of a star at the triangle with two of its other vertices, in 5D.
+  struct TriangleIncidence {
+    std::array<Index, 3> triangle;
+    std::size_t fan;
+    Index simplex;
+    auto operator<=>(const TriangleIncidence&) const = default;
   };
 
   [[nodiscard]] std::span<const Index> star(std::size_t c) const {
@@ -271,6 +302,79 @@ class NonmanifoldSplitter {
     return !fans.empty();
   }
 
+  /// As gather_fans, for triangles of `v` and two larger vertices.
+  void gather_triangle_fans(Index v, std::span<const Index> star, std::vector<TriangleFan>& fans) {
+    const auto corner = [&](std::size_t place, Index w) {
+      const Simplex& simplex = contour_.simplices[star[place]];
+      return static_cast<std::size_t>(std::find(simplex.begin(), simplex.end(), w) - simplex.begin());
+    };
+    const auto pair_of = [&](std::size_t place, Index w, Index x) {
+      const auto [least, most] = std::minmax({corner(place, w), corner(place, x)});
+      return N * N * place + N * least + most;
+    };
+    gather_faces(v, star);
+    sets_.reset(N * N * star.size());
+    for_shared_faces([&](const Face& a, const Face& b) {
+      for (std::size_t i = 0; i < a.others.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          sets_.join(pair_of(a.place, a.others[i], a.others[j]), pair_of(b.place, a.others[i], a.others[j]));
+    });
+    std::vector<TriangleIncidence> incidences;
+    for (std::size_t i = 0; i < star.size(); ++i)
+      for (const Index w : contour_.simplices[star[i]])
+        for (const Index x : contour_.simplices[star[i]])
+          if (w > v && x > w) incidences.push_back({{v, w, x}, sets_.find(pair_of(i, w, x)), star[i]});
+    std::sort(incidences.begin(), incidences.end());
+    for (std::size_t i = 1; i < incidences.size(); ++i) {
+      const TriangleIncidence& here = incidences[i];
+      if (here.triangle != incidences[i - 1].triangle) continue;  // first fan of the next triangle
+      if (here.fan != incidences[i - 1].fan) fans.push_back({here.triangle, {}});
+      if (!fans.empty() && fans.back().triangle == here.triangle) fans.back().simplices.push_back(here.simplex);
+    }
+  }
+
+  /// As split_edges, for triangles with several fans: inserts their centroids.
+  bool split_triangles() {
+    std::vector<TriangleFan> fans;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) gather_triangle_fans(candidates_[c], star(c), fans);
+    std::vector<bool> changed(contour_.simplices.size(), false);
+    for (const TriangleFan& fan : fans) {
+      if (std::ranges::any_of(fan.simplices, [&](Index s) { return changed[s]; })) continue;
+      const Index m = add_centroid(fan.triangle);
+      for (const Index s : fan.simplices) {
+        changed[s] = true;
+        const Simplex whole = contour_.simplices[s];
+        for (const Index left_out : fan.triangle) {
+          Simplex part = whole;
+          *std::find(part.begin(), part.end(), left_out) = m;
+          if (left_out == fan.triangle[0])
+            contour_.simplices[s] = part;
+          else
+            contour_.simplices.push_back(part);
+        }
+      }
+    }
+    return !fans.empty();
+  }
+
+  Index add_centroid(const std::array<Index, 3>& triangle) {
+    const auto [a, b, c] = triangle;
+    const Index m = add_vertex(a, b);
+    const auto mean = [&](auto& points) {
+      for (int i = 0; i < N; ++i) points[m][i] = (points[a][i] + points[b][i] + points[c][i]) / 3;
+    };
+    if (contour_.periods.empty())
+      mean(contour_.vertices);
+    else
+      contour_.vertices[m] =
+          between_modulo<N>(contour_.vertices[m], contour_.vertices[c], 1.0 / 3, std::span(contour_.periods));
+    if (!contour_.normals.empty()) {
+      mean(contour_.normals);
+      normalize(contour_.normals[m]);
+    }
+    return m;
+  }
+
   void split_fan(const Fan& fan) {
     const Index m = add_vertex(fan.from, fan.to);
     for (const Index s : fan.simplices) {
@@ -291,17 +395,51 @@ class NonmanifoldSplitter {
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       const Index v = candidates_[c];
       gather_rim(v, star(c));
+      find_holes(kNone);
       if (rim_.empty() || rim_.front().hole == rim_.back().hole) continue;
+      if (N == 5 && !holes_are_spheres()) continue;
       any = true;
-      const bool waits = std::any_of(rim_.begin(), rim_.end(), [&](const Rim& rim) {
-        return changed[v] || changed[rim.others[0]] || changed[rim.others[1]];
-      });
-      if (!waits) fill_holes(v, changed);
+      if (!waits_for(v, changed)) fill_holes(v, v, changed);
     }
     return any;
   }
 
-  /// Gathers the boundary edges of the link of `v`, ordered by hole.
+  /// As separate_holes, in 5D, for edges whose link is a surface with several holes: each hole except the first gets a
+  /// midpoint of the edge.
+  bool separate_holes_at_edges() {
+    std::vector<bool> changed(contour_.vertices.size(), false);
+    bool any = false;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      const Index v = candidates_[c];
+      gather_rim(v, star(c));
+      const std::vector<Rim> all = rim_;
+      std::vector<Index> ends;
+      for (const Rim& rim : all)
+        for (const Index w : rim.others)
+          if (w > v) ends.push_back(w);
+      std::sort(ends.begin(), ends.end());
+      ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+      for (const Index w : ends) {
+        rim_.clear();
+        for (const Rim& rim : all)
+          if (std::ranges::find(rim.others, w) != rim.others.end()) rim_.push_back(rim);
+        find_holes(w);
+        if (rim_.front().hole == rim_.back().hole) continue;
+        any = true;
+        if (!waits_for(v, changed)) fill_holes(v, w, changed);
+      }
+    }
+    return any;
+  }
+
+  /// Whether a vertex of the rim has been changed.
+  [[nodiscard]] bool waits_for(Index v, const std::vector<bool>& changed) const {
+    return changed[v] || std::ranges::any_of(rim_, [&](const Rim& rim) {
+             return std::ranges::any_of(rim.others, [&](Index w) { return changed[w]; });
+           });
+  }
+
+  /// Gathers the boundary faces of the link of `v`.
   void gather_rim(Index v, std::span<const Index> star) {
     gather_faces(v, star);
     rim_.clear();
@@ -310,10 +448,14 @@ class NonmanifoldSplitter {
       for (end = i + 1; end < faces_.size() && faces_[end].others == faces_[i].others;) ++end;
       if (end - i == 1) rim_.push_back({0, faces_[i].others, star[faces_[i].place]});
     }
-    // holes: connected components of the rim
+  }
+
+  /// Orders the rim by holes: parts that are connected by vertices other than `except`.
+  void find_holes(Index except) {
     std::vector<std::pair<Index, std::size_t>> corners;  // vertex, index in rim_
     for (std::size_t i = 0; i < rim_.size(); ++i)
-      for (const Index w : rim_[i].others) corners.emplace_back(w, i);
+      for (const Index w : rim_[i].others)
+        if (w != except) corners.emplace_back(w, i);
     std::sort(corners.begin(), corners.end());
     sets_.reset(rim_.size());
     for (std::size_t i = 1; i < corners.size(); ++i)
@@ -322,26 +464,99 @@ class NonmanifoldSplitter {
     std::sort(rim_.begin(), rim_.end(), [](const Rim& a, const Rim& b) { return a.hole < b.hole; });
   }
 
-  void fill_holes(Index v, std::vector<bool>& changed) {
+  /// Whether all holes, which are in surfaces of triangles, have spheres around them.
+  [[nodiscard]] bool holes_are_spheres() const {
+    for (std::size_t first = 0, end = 0; first < rim_.size(); first = end) {
+      std::vector<Index> vertices;
+      std::vector<std::pair<Index, Index>> edges;
+      for (end = first; end < rim_.size() && rim_[end].hole == rim_[first].hole; ++end)
+        for (const Index a : rim_[end].others) {
+          vertices.push_back(a);
+          for (const Index b : rim_[end].others)
+            if (a < b) edges.emplace_back(a, b);
+        }
+      const auto count = [](auto& all) {
+        std::sort(all.begin(), all.end());
+        return std::unique(all.begin(), all.end()) - all.begin();
+      };
+      if (count(vertices) - count(edges) + static_cast<std::ptrdiff_t>(end - first) != 2) return false;
+    }
+    return true;
+  }
+
+  /// Gives each hole except the first the middle of `v` and `w`; a copy if they are one.
+  void fill_holes(Index v, Index w, std::vector<bool>& changed) {
     Index own = kNone;
     for (std::size_t i = 1; i < rim_.size(); ++i) {
       const Rim& rim = rim_[i];
       if (rim.hole == rim_.front().hole) continue;
-      if (rim.hole != rim_[i - 1].hole) own = add_vertex(v, v);
-      // Mirror image of the adjacent simplex in their common face: replace the fourth vertex and exchange two others.
+      if (rim.hole != rim_[i - 1].hole) own = add_vertex(v, w);
+      // Mirror image of the adjacent simplex in their common face: replace the vertex opposite of it and exchange two
+      // others.
       Simplex filling = contour_.simplices[rim.simplex];
-      for (Index& w : filling)
-        if (w != v && w != rim.others[0] && w != rim.others[1]) w = own;
+      for (Index& each : filling)
+        if (each != v && std::ranges::find(rim.others, each) == rim.others.end()) each = own;
       std::swap(*std::find(filling.begin(), filling.end(), rim.others[0]),
                 *std::find(filling.begin(), filling.end(), rim.others[1]));
       contour_.simplices.push_back(filling);
-      for (const Index w : {v, rim.others[0], rim.others[1]}) changed[w] = true;
+      changed[v] = true;
+      for (const Index each : rim.others) changed[each] = true;
     }
+  }
+
+  /// The link of `v`, with numbers of its own for the vertices.
+  [[nodiscard]] tile::Simplices link_of(Index v, std::span<const Index> star) const {
+    std::vector<Index> vertices;
+    for (const Index s : star)
+      for (const Index w : contour_.simplices[s]) vertices.push_back(w);
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    tile::Simplices link(star.size(), tile::kNoSimplex);
+    for (std::size_t i = 0; i < star.size(); ++i) {
+      std::size_t n = 0;
+      for (const Index w : contour_.simplices[star[i]])
+        if (w != v)
+          link[i][n++] =
+              static_cast<tile::VertexId>(std::lower_bound(vertices.begin(), vertices.end(), w) - vertices.begin());
+      tile::sort_vertices(link[i], static_cast<int>(n));
+    }
+    return link;
+  }
+
+  /// Divides links of candidates into balls, and gives all balls except the first a copy of the vertex. A vertex of
+  /// which a simplex has been changed waits for the next round. Returns the vertices whose links have to be tested in
+  /// the next round, ascending.
+  std::vector<Index> separate_balls() {
+    std::vector<std::vector<std::uint32_t>> balls(candidates_.size());
+    for_each_block(candidates_.size(), 16, threads_, nullptr, [&](std::size_t, std::size_t from, std::size_t to) {
+      for (std::size_t c = from; c < to; ++c) balls[c] = balls_of_link(link_of(candidates_[c], star(c)));
+    });
+    std::vector<bool> changed(contour_.simplices.size(), false);
+    std::vector<Index> next;
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      const Index v = candidates_[c];
+      if (std::ranges::all_of(balls[c], [](std::uint32_t ball) { return ball == 0; })) continue;
+      next.push_back(v);
+      if (std::ranges::any_of(star(c), [&](Index s) { return changed[s]; })) continue;
+      std::vector<Index> copies = {v};
+      for (std::size_t i = 0; i < balls[c].size(); ++i) {
+        const Index s = star(c)[i];
+        Simplex& simplex = contour_.simplices[s];
+        changed[s] = true;
+        next.insert(next.end(), simplex.begin(), simplex.end());
+        if (balls[c][i] == copies.size()) next.push_back(copies.emplace_back(add_vertex(v, v)));
+        *std::find(simplex.begin(), simplex.end(), v) = copies[balls[c][i]];
+      }
+    }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    return next;
   }
 
   Contour<N, Real>& contour_;
   std::vector<Index> candidates_;
   std::uint64_t max_vertices_;
+  unsigned threads_;
   std::vector<std::size_t> first_;  ///< star of candidate c: members_[first_[c]] ... members_[first_[c + 1] - 1]
   std::vector<Index> members_;
   std::vector<Face> faces_;
@@ -355,14 +570,15 @@ class NonmanifoldSplitter {
 }  // namespace
 
 template <int N, class Real>
-void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices) {
+void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices,
+                       unsigned threads) {
   // In 2D an edge of the grid has only two tiles, so contours cannot touch themselves.
   if constexpr (N > 2)
-    if (!candidates.empty()) NonmanifoldSplitter<N, Real>(contour, candidates, max_vertices).run();
+    if (!candidates.empty()) NonmanifoldSplitter<N, Real>(contour, candidates, max_vertices, threads).run();
 }
 
-#define TEGL_INSTANTIATE_CONTOURS(N, Real) \
-  template void split_nonmanifold<N, Real>(Contour<N, Real>&, const std::vector<Index>&, std::uint64_t);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) \
+  template void split_nonmanifold<N, Real>(Contour<N, Real>&, const std::vector<Index>&, std::uint64_t, unsigned);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -7,7 +7,12 @@
 // - Edge (4D) with several fans, whose ends have one fan each: a midpoint is inserted in all fans except one.
 // - Vertex where holes meet (4D), with a sphere with several holes as its link: each hole except one gets a copy of the
 // vertex, and zero-size tetrahedra connect the two.
-// The point set does not change, and simplices that shared a face still share it.
+// The point set does not change, and up to 4D simplices that shared a face still share it.
+// In 5D also:
+// - Triangle with several fans: a centroid is inserted in all fans except one.
+// - Edge where holes meet: each hole except one gets a midpoint, and 4-simplices of no size fill the gap.
+// - Vertex whose link is still neither a sphere nor a ball, as where three holes meet: the link is divided into balls,
+// each of which gets a copy of the vertex (tile/link_balls.hpp). Then some simplices no longer share a face.
 #pragma once
 
 #include <array>
@@ -60,8 +65,10 @@ class NonmanifoldCollector : public NonmanifoldCandidates {
 
 /// Makes the contour a manifold around the candidates. New vertices and simplices are appended in an order that depends
 /// on the contour only. Throws TooLarge beyond `max_vertices`. O(S + c log c), with S simplices in all and c simplices
-/// around candidates.
+/// around candidates; in 5D for each round of copies, and the links of the candidates are tested. `threads`: for the
+/// tests in 5D; the result does not depend on them.
 template <int N, class Real>
-void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices);
+void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices,
+                       unsigned threads = 1);
 
 }  // namespace tegl::detail

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <bit>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <optional>
 
@@ -33,6 +34,7 @@ namespace {
 /// Bits of one layer's samples, and its faces that have vertices.
 struct TileLayer {
   std::vector<Word> high;
+  std::vector<Word> missing;  ///< empty: none
   FaceRanks faces;
 };
 
@@ -65,7 +67,8 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
         built_(cube_,
                {options.ambiguity == Ambiguity::high ? tile::Alternative::high : tile::Alternative::low,
                 options.triangulation, is_estimated(options.ambiguity)},
-               tile_bytes, workers_.count()) {
+               tile_bytes, workers_.count()),
+        missing_{TilesWithoutValues<N>(shape_), TilesWithoutValues<N>(shape_), TilesWithoutValues<N>(shape_)} {
     if (options.normals != Normals::none) placement_.want_normals(source, grid, options);
     if (is_estimated(options.ambiguity)) {
       estimator_.emplace(source, grid.sizes(), options, plan.part);
@@ -89,6 +92,15 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     for (; prepared_ < std::min(k + 2 + reach_, shape_.layers()); ++prepared_) source_.prepare(prepared_);
     watch.add_to(stats_.read_seconds);
     return true;
+  }
+
+  /// Whether any tile has a missing corner.
+  [[nodiscard]] bool any_missing() const noexcept { return any_missing_; }
+  /// The vertices at which the contour may touch itself beside missing values, ascending. Known after the extraction,
+  /// unless the contour was only counted.
+  [[nodiscard]] std::vector<Index> touching() {
+    std::sort(touching_.begin(), touching_.end());
+    return std::move(touching_);
   }
 
   /// Classifies layer k + 1, finds the cells of slab k, numbers its vertices, and writes slab k - 1.
@@ -115,6 +127,7 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   /// Progress passes per slab: building the next slab's tiles (up to two), building tiles whose own choice matters (up
   /// to two, only with choices), writing.
   [[nodiscard]] unsigned passes() const noexcept { return choices_ ? 5 : 3; }
+  static constexpr unsigned kAll = (1u << N) - 1;
   static constexpr std::size_t kNoCell = ~std::size_t{0};
   static constexpr std::uint32_t kSlabAbove = std::uint32_t{1} << 31;  ///< for cells of the slab above a layer
 
@@ -143,23 +156,21 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     TileLayer& here = layer(k);
     here.high.assign(shape_.rows() * shape_.pitch(), 0);
     here.faces.reset(shape_.rows() * grid_cells_.slots(false) * shape_.words());
+    std::vector<Word> missing(shape_.rows() * shape_.pitch());
     std::atomic<bool> any_missing = false;
     for_range(shape_.rows(), 64, [&](std::size_t from, std::size_t to) {
-      std::vector<Word> missing(shape_.pitch());
       for (std::size_t row = from; row < to; ++row) {
         auto start = shape_.index_of(row);
         start[N - 1] = k;
         const std::size_t first = row * shape_.pitch();
-        if (source_.classify(start, 1, {here.high.data() + first, shape_.pitch()}, {missing.data(), shape_.pitch()}) !=
-            0)
+        if (source_.classify(start, 1, {here.high.data() + first, shape_.pitch()},
+                             {missing.data() + first, shape_.pitch()}) != 0)
           any_missing = true;
       }
     });
-    if (any_missing)
-      throw Error(ErrorCode::UnsupportedData,
-                  fmt::format("a {}D image with missing values, the first in layer {} of its last axis; expected no "
-                              "missing values, which are supported up to 4D",
-                              N, k));
+    if (!any_missing) missing.clear();
+    here.missing = std::move(missing);
+    any_missing_ = any_missing_ || any_missing;
   }
 
   void find_cells(std::size_t k, ExtractStats& stats) {
@@ -167,11 +178,14 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     here.faces.reset(shape_.rows() * grid_cells_.slots(true) * shape_.words());
     // find cells, by row in parallel
     const std::array<const Word*, 2> layers = {layer(k).high.data(), layer(k + 1).high.data()};
+    TilesWithoutValues<N>& missing = missing_[k % missing_.size()];
+    missing.set({&layer(k).missing, &layer(k + 1).missing});
     by_row_.resize(shape_.rows());
     for_range(shape_.rows(), 16, [&](std::size_t from, std::size_t to) {
       for (std::size_t row = from; row < to; ++row) {
         by_row_[row].clear();
         finder_.find(k, layers, row, by_row_[row]);
+        if (missing.any()) std::erase_if(by_row_[row], [&](const Cell& cell) { return missing.has(cell); });
       }
     });
     // gather them in order
@@ -359,8 +373,9 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     part_first_ = part_end_;
   }
 
-  /// Looks up the numbers of all vertices of a cell. Writes the vertices of the faces that it owns; faces in the lower
-  /// layer only for slab 0.
+  /// Looks up the numbers of all vertices of a cell. Writes the vertices of the faces that it owns. It owns faces in
+  /// the lower layer only if they have no cell below: in slab 0 and beside missing values. Then their room is that of
+  /// the part before, in front of this one's.
   void write_vertices(std::size_t k, std::size_t c, TilePlaces<N>& places, std::vector<Index>& ids) {
     const Cell& cell = slab(k).cells[c];
     const SeenTile& seen = slab(k).tiles[cell.tile];
@@ -372,22 +387,63 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
     for_faces_of(k, c,
                  [&](FaceRanks& faces, std::size_t word, unsigned bit, const BuiltTile::FaceVertices& vertices,
                      std::size_t, std::uint16_t face) {
-                   const bool is_below = &faces == &layer(k).faces;
                    // All cells at a face give it the same number of vertices, unless a caller's estimator is
                    // inconsistent.
                    if (estimator_ && vertices.count != faces.count(word, bit)) return estimator_->report_change(base);
                    number_face(seen, vertices, faces.first(word, bit), ids);
                    if (cube_.cells()[face].dim == 1) places.set_edge(vertices.first, alpha(kind, base, face));
-                   if ((is_below && k > 0) || faces.owner(word, bit) != owner_name(faces, layer(k), c)) return;
+                   if (faces.owner(word, bit) != owner_name(faces, layer(k), c)) return;
+                   if (any_missing_ && may_touch(cell, k, face)) add_touching(vertices, ids);
                    for (std::size_t v = vertices.first; v < std::size_t{vertices.first} + vertices.count; ++v) {
                      const auto place = in_grid(kind, places(v));
-                     const auto at = static_cast<Index>(ids[v] - static_cast<Index>(part_first_));
+                     const auto at = std::ptrdiff_t{ids[v]} - static_cast<std::ptrdiff_t>(part_first_);
                      room_.vertices[at] = point(kind, base, face, place);
                      if (options_.normals != Normals::none)
                        room_.normals[at] =
                            placement_.normals()->template in_cell<CellFrame<N, (1u << N) - 1>>(base, place);
                    }
                  });
+  }
+
+  /// A set of tiles around a face, as masks of the axes along which they are before it.
+  struct TilesAround {
+    unsigned count = 0, common = ~0u, any = 0;
+    void add(unsigned place) noexcept {
+      ++count;
+      common &= place;
+      any |= place;
+    }
+    /// Whether they are all tiles around a face of more dimensions.
+    [[nodiscard]] bool is_box() const noexcept { return count == 1u << std::popcount(common ^ any); }
+  };
+  /// Whether the contour may touch itself at a face of a cell: some of the tiles around it have missing corners, and
+  /// neither these nor the others form a box. At the border: whether some have missing corners.
+  [[nodiscard]] bool may_touch(const Cell& cell, std::size_t k, std::size_t face) const noexcept {
+    const CellKind<N> kind(cell.kind);
+    const unsigned shift = kind.spread(cube_.cells()[face].base), fixed = kAll & ~kind.spread(cube_.cells()[face].axes);
+    auto at = base_of(cell, k);
+    for (int a = 0; a < N; ++a) at[a] += shift >> a & 1u;
+    const std::size_t row = shape_.shifted(cell.row, shift);
+    TilesAround missing, others;
+    bool is_at_border = false;
+    for (unsigned place = 0; place <= kAll; ++place) {
+      if ((place & ~fixed) != 0) continue;
+      bool exists = true;
+      for (int a = 0; a < N; ++a) exists = exists && ((place >> a & 1u) != 0 ? at[a] > 0 : at[a] + 1 < shape_.size(a));
+      is_at_border = is_at_border || !exists;
+      if (!exists) continue;
+      const std::size_t slab = at[N - 1] - (place >> (N - 1) & 1u);
+      if (missing_[slab % missing_.size()].has(shape_.unshifted(row, place), at[0] - (place & 1u)))
+        missing.add(place);
+      else
+        others.add(place);
+    }
+    return missing.count != 0 && (is_at_border || (!missing.is_box() && !others.is_box()));
+  }
+  void add_touching(const BuiltTile::FaceVertices& vertices, const std::vector<Index>& ids) {
+    const std::lock_guard lock(touching_mutex_);
+    touching_.insert(touching_.end(), ids.begin() + vertices.first,
+                     ids.begin() + vertices.first + std::ptrdiff_t{vertices.count});
   }
 
   /// Numbers a face's vertices in the same order for all cells that share the face.
@@ -508,6 +564,10 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   BuiltTiles built_;
   std::array<TileLayer, 3> layers_;  ///< layer k at index k modulo size
   std::array<TileSlab, 2> slabs_;
+  std::array<TilesWithoutValues<N>, 3> missing_;  ///< of slab k at index k modulo size
+  bool any_missing_ = false;
+  std::mutex touching_mutex_;
+  std::vector<Index> touching_;  ///< see `touching`
   std::size_t next_ = 0;      ///< next layer to process
   std::size_t prepared_ = 0;  ///< number of layers prepared
   std::size_t reach_ = 0;     ///< additional layers that a custom estimator reads
@@ -549,14 +609,21 @@ class BuiltContour final : public ContourOutput<N, Real> {
   bool normals_;
 };
 
+/// What an extraction without tables reports.
+struct BuiltResult {
+  ExtractStats stats = {};
+  bool any_missing = false;
+  std::vector<Index> touching = {};  ///< vertices at which the contour may touch itself
+};
+
 /// Extracts into `output`. An image without tiles leaves it empty.
 template <int N, class Real>
-ExtractStats build_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
-                         BuiltContour<N, Real>& output, std::size_t tile_bytes, const ExtractPlan& plan) {
+BuiltResult build_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options,
+                        BuiltContour<N, Real>& output, std::size_t tile_bytes, const ExtractPlan& plan) {
   if (SteppedExtraction<N, Real>::tiles_of(grid) == 0) return {};
   TileExtraction<N, Real> extraction(source, grid, options, output, tile_bytes, plan);
   extraction.run();
-  return extraction.stats();
+  return {extraction.stats(), extraction.any_missing(), extraction.touching()};
 }
 
 }  // namespace
@@ -571,15 +638,25 @@ Extraction<N, Real> extract_tiles(SampleSource<N>& source, const Grid<N>& grid, 
   }
   result.contour.direction = options.direction;
   BuiltContour<N, Real> output(&result.contour, options.normals != Normals::none);
-  result.stats = build_tiles(source, grid, options, output, tile_bytes, plan);
+  BuiltResult built = build_tiles(source, grid, options, output, tile_bytes, plan);
+  result.stats = built.stats;
+  if (!built.touching.empty()) {
+    Stopwatch watch;
+    split_nonmanifold(result.contour, built.touching, plan.max_vertices, options.work.threads);
+    watch.add_to(result.stats.generate_seconds);
+  }
   return result;
 }
 
 template <int N>
 ExtractedSize count_tiles(SampleSource<N>& source, const Grid<N>& grid, const ExtractOptions& options) {
   BuiltContour<N, float> output(nullptr, options.normals != Normals::none);
-  const ExtractStats stats = build_tiles(source, grid, options, output, kBuiltTileBytes, {});
-  return {output.size, stats};
+  const BuiltResult built = build_tiles(source, grid, options, output, kBuiltTileBytes, {});
+  if (!built.any_missing) return {output.size, built.stats};
+  ExtractOptions without_normals = options;
+  without_normals.normals = Normals::none;
+  const auto [contour, stats] = extract_tiles<N, float>(source, grid, without_normals);
+  return {{contour.vertices.size(), contour.simplices.size()}, stats};
 }
 
 #define TEGL_INSTANTIATE(N, Real)                                                                              \

@@ -23,6 +23,50 @@ struct Cell {
   std::uint8_t kind;
 };
 
+/// The tiles of a slab that have a missing corner; none until the first is added.
+template <int N>
+class TilesWithoutValues {
+ public:
+  explicit TilesWithoutValues(const RowShape<N>& shape) : shape_(shape) {}
+
+  [[nodiscard]] bool any() const noexcept { return !bits_.empty(); }
+  void clear() noexcept { bits_.clear(); }
+  /// Takes the tiles between two layers whose missing samples are given by bits, as RowShape has them; an empty one has
+  /// none.
+  void set(const std::array<const std::vector<Word>*, 2>& missing) {
+    clear();
+    if (missing[0]->empty() && missing[1]->empty()) return;
+    bits_.assign(shape_.rows() * shape_.pitch(), 0);
+    for (std::size_t row = 0; row < shape_.rows(); ++row) {
+      if (!shape_.has_cells(shape_.index_of(row), kAll)) continue;
+      for (unsigned shift = 0; shift <= kAll; ++shift) {
+        const std::vector<Word>& layer = *missing[shift >> (N - 1)];
+        if (layer.empty()) continue;
+        const Word* const from = layer.data() + shape_.shifted(row, shift) * shape_.pitch();
+        Word* const to = bits_.data() + row * shape_.pitch();
+        for (std::size_t w = 0; w < shape_.words(); ++w)
+          to[w] |= (shift & 1u) == 0 ? from[w] : from[w] >> 1 | from[w + 1] << (kWordBits - 1);
+      }
+    }
+  }
+  /// Whether the tile that starts at sample i of a row has a missing corner.
+  [[nodiscard]] bool has(std::size_t row, std::size_t i) const noexcept {
+    return any() && (bits_[row * shape_.pitch() + i / kWordBits] >> (i % kWordBits) & 1u) != 0;
+  }
+  /// Whether the tile of a cell has a missing corner.
+  [[nodiscard]] bool has(const Cell& cell) const noexcept {
+    const CellKind<N> kind(cell.kind);
+    const unsigned back = kind.is_cap() && kind.side() == 1 && kind.across() != N - 1 ? 1u << kind.across() : 0;
+    return any() && has(shape_.unshifted(cell.row, back), cell.i - (back & 1u));
+  }
+
+ private:
+  static constexpr unsigned kAll = (1u << N) - 1;
+
+  const RowShape<N>& shape_;
+  std::vector<Word> bits_;
+};
+
 /// Finds the cells of a slab that have a contour.
 template <int N>
 class CellFinder {

@@ -494,18 +494,6 @@ TEST(Extract5d, NormalsPointAwayFromABall) {
   }
 }
 
-TEST(Extract5d, MissingValuesAreAnErrorThatSaysWhere) {
-  auto image = noise<float, 5>(3, 11);
-  image.values[100] = std::numeric_limits<float>::quiet_NaN();
-  try {
-    extract(image.view(), 0.5);
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::UnsupportedData);
-    EXPECT_NE(std::string(error.what()).find("layer 1 "), std::string::npos) << error.what();
-  }
-}
-
 TEST(Extract5d, TellsOfProgressFromNothingToAllWithoutFalling) {
   const auto image = noise<float, 5>(3, 12);
   ExtractOptions options;
