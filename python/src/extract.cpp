@@ -361,21 +361,25 @@ std::vector<std::pair<const char*, Division>> divisions() {
 }
 
 template <class Real>
-AnyContour divided_contour_of(const AnyImage& image, Division division, double level, const ExtractOptions& options) {
+AnyContour divided_contour_of(const AnyImage& image, Division division, const std::vector<int>& axes,
+                              const std::vector<double>& periods, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
-    return {extract_divided<Real>(view, division, level, options), level};
+    return {extract_divided<Real>(view, division, level, options, periods_of(view.grid(), axes, periods)), level};
   });
 }
 
-std::unique_ptr<AnyContour> extract_divided_any(const AnyImage& image, const std::string& name, double level,
-                                                bool is_double, const py::dict& arguments, const py::object& progress) {
+std::unique_ptr<AnyContour> extract_divided_any(const AnyImage& image, const std::string& name,
+                                                const std::vector<int>& axes, const std::vector<double>& periods,
+                                                double level, bool is_double, const py::dict& arguments,
+                                                const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto normals = py::cast<std::string>(arguments["normals"]);
   const auto division = named<Division>("division", name, divisions());
   return call.run([&] {
-    auto result = std::make_unique<AnyContour>(is_double ? divided_contour_of<double>(image, division, level, options)
-                                                         : divided_contour_of<float>(image, division, level, options));
+    auto result = std::make_unique<AnyContour>(
+        is_double ? divided_contour_of<double>(image, division, axes, periods, level, options)
+                  : divided_contour_of<float>(image, division, axes, periods, level, options));
     add_shape_normals(*result, normals, options);
     return result;
   });
@@ -385,13 +389,9 @@ std::pair<std::unique_ptr<AnyContour>, py::array> unroll_any(const AnyContour& c
   Buffer<Index> originals;
   auto result = std::make_unique<AnyContour>(std::visit(
       [&]<int N, class Real>(const Contour<N, Real>& c) -> AnyContour {
-        if constexpr (N <= 4) {
-          Unrolled<N, Real> unrolled = unroll(c);
-          originals = std::move(unrolled.originals);
-          return {std::move(unrolled.contour), contour.isovalue};
-        } else {
-          throw_dimension("unroll", N, "2 to 4 dimensions");
-        }
+        Unrolled<N, Real> unrolled = unroll(c);
+        originals = std::move(unrolled.originals);
+        return {std::move(unrolled.contour), contour.isovalue};
       },
       contour.contour));
   return {std::move(result), py::array_t<Index>(static_cast<py::ssize_t>(originals.size()), originals.data())};
@@ -407,7 +407,8 @@ std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, const s
   const auto of_view = [&]<class T, int N>(const Image<T, N>& view) -> ContourSize {
     if (axes.empty() && lattice.empty() && division.empty()) return count(view, level, options);
     if (!division.empty())
-      return count_divided(view, named<Division>("division", division, divisions()), level, options);
+      return count_divided(view, named<Division>("division", division, divisions()), level, options,
+                           periods_of(view.grid(), axes, periods));
     if constexpr (N <= 4) {
       if (!lattice.empty()) {
         const auto on = named<Lattice>("lattice", lattice, lattices());
@@ -477,8 +478,9 @@ void bind_extract(py::module_& m) {
   m.def("extract_lattice", &extract_lattice_any, py::arg("image"), py::arg("lattice"), py::arg("axes"),
         py::arg("periods"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
         doc::extract_lattice);
-  m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("level"),
-        py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_divided);
+  m.def("extract_divided", &extract_divided_any, py::arg("image"), py::arg("division"), py::arg("axes"),
+        py::arg("periods"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
+        doc::extract_divided);
   m.def("unroll", &unroll_any, py::arg("contour"), doc::unroll);
   m.def("count", &count_any, py::arg("image"), py::arg("axes"), py::arg("periods"), py::arg("lattice"),
         py::arg("division"), py::arg("level"), py::arg("options"), py::arg("progress"), doc::count);

@@ -97,7 +97,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         "cubic" overrides. With `periodic`, the layers must be even in number. See docs/other-tilings.md.
     division
         How cells are divided into simplices: "kuhn" or "symmetric", in 2D and 3D also "alternating", or "hybrid", which
-        divides ambiguous cells only. In 5D without normals, missing values and "barycentric". See docs/other-tilings.md.
+        divides ambiguous cells only. May be combined with `periodic`. In 5D without "barycentric". See docs/other-tilings.md.
     positions
         Where vertices lie between two samples: "linear" (interpolation), "relaxed" (smooth surfaces of masks and labels,
         without stair steps; every sample stays on its side), "filtered" (linear in `positions_image`) or "gravitation"
@@ -161,12 +161,13 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
                                            None if positions == "linear" and not of_cells else positions),
                                           ("curved", curved))
                  if value is not None]
-        if given not in (["positions", "curved"], ["lattice", "periodic"], ["periodic", "curved"]) and len(given) > 1:
+        if given not in (["positions", "curved"], ["lattice", "periodic"], ["division", "periodic"],
+                         ["periodic", "curved"]) and len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
         axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared, of_samples)
         if division is not None:
-            core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), level, is_double,
-                                         options, progress)
+            core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), axes, periods, level,
+                                         is_double, options, progress)
         elif positions != "linear" or of_cells:
             faces = _cell_faces(array, prepared, (spacing, origin, coords)) if of_cells else None
             rule = "custom" if callable(positions) else positions
@@ -263,7 +264,7 @@ def count(array, level: float, *, spacing=None, origin=None, coords=None, affine
     with prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic))
                  if value is not None]
-        if len(given) > 1 and given != ["lattice", "periodic"]:
+        if len(given) > 1 and given not in (["lattice", "periodic"], ["division", "periodic"]):
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
         axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
         points = _arguments.as_text("lattice", "" if lattice is None else lattice)

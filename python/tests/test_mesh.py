@@ -205,8 +205,18 @@ def test_contours_of_divided_cells():
         surface = tegl.contour(ball, 0.0, division=division, spacing=2 / 19)
         assert surface.check().is_closed and surface.check().euler == 2
         assert surface.measure().content == pytest.approx(4 / 3 * np.pi * 0.343, rel=0.03)
-    with pytest.raises(ValueError, match="division with periodic; expected one of the two"):
-        tegl.contour(ball, 0.0, division="kuhn", periodic=0)
+    with pytest.raises(ValueError, match="normals context of a divided image"):
+        tegl.contour(ball, 0.0, division="kuhn", normals="context")
+    turn = 2 * np.pi * np.arange(12) / 12
+    z, y, x = np.meshgrid(turn, turn, turn, indexing="ij")
+    gyroid = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+    for division in ("kuhn", "alternating", "symmetric", "hybrid"):
+        cell = tegl.contour(gyroid, 0.01, division=division, periodic="all", normals="sobel")
+        assert cell.check().is_closed and cell.check().euler == -8 and len(cell.normals) == len(cell.vertices)
+        assert tuple(tegl.count(gyroid, 0.01, division=division, periodic="all")) == (len(cell.vertices), len(cell.simplices))
+        assert not cell.unroll()[0].check().is_closed
+    with pytest.raises(ValueError, match="expected an even number"):
+        tegl.contour(gyroid[:-1], 0.01, division="alternating", periodic="all")
     with pytest.raises(ValueError, match="expected kuhn or symmetric"):
         tegl.contour(np.zeros((3, 3, 3, 3)), 0.0, division="hybrid", allow_empty=True)
 
@@ -228,8 +238,18 @@ def test_contours_of_divided_cells_in_5d():
         assert tuple(tegl.count(ball, 0.0, division=division)) == (len(surface.vertices), len(surface.simplices))
     with pytest.raises(ValueError, match="division hybrid of a 5D image; expected kuhn or symmetric"):
         tegl.contour(ball, 0.0, division="hybrid")
-    with pytest.raises(ValueError, match="normals of a divided 5D image; expected none"):
-        tegl.contour(ball, 0.0, division="kuhn", normals=True)
+    turn = 2 * np.pi * np.arange(4) / 4
+    torus = np.cos(turn).reshape(4, 1, 1, 1, 1) + np.zeros([4] * 5)  # two flat T^4 in T^5
+    sheets = tegl.contour(torus, 0.1, division="kuhn", periodic="all", normals=True)
+    report = sheets.check()
+    assert report.is_closed and report.components == 2 and report.euler == 0
+    assert np.abs(np.abs(sheets.normals[:, 0]) - 1).max() < 1e-6
+    assert tuple(tegl.count(torus, 0.1, division="kuhn", periodic="all")) == (len(sheets.vertices), len(sheets.simplices))
+    assert not sheets.unroll()[0].check().is_closed
+    ball[2, 2, 2, 2, 2] = np.nan
+    for division in (None, "kuhn", "symmetric"):
+        report = tegl.contour(ball, -0.2, division=division).check()
+        assert report.is_manifold and not report.is_closed
 
 
 def test_contours_of_lattices_and_of_scattered_points():

@@ -337,11 +337,35 @@ TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
     arguments.insert(arguments.end(), with.begin(), with.end());
     expect_refused(arguments, part, 2);
   };
-  expect_no_division({"--normals"}, "--normals gradient with --division and an image of 5 axes; expected no normals");
+  expect_no_division({"--normals", "context"}, "normals context of a divided image; expected gradients of other kinds");
+  expect_no_division({"--periodic", "auto"}, "--periodic auto with an image of 5 axes; expected names of axes");
+  expect_refused({"contour", path("five.nrrd"), "--iso", "0", "--periodic", "x", "-o", path("no.vtkhdf")},
+                 "--periodic x with an image of 5 axes; expected --division kuhn or symmetric with it", 2);
   expect_no_division({"--triangulation", "barycentric"},
                      "--triangulation barycentric with --division and an image of 5 axes; expected compact");
   expect_refused({"contour", path("five.nrrd"), "--iso", "0", "--division", "hybrid", "-o", path("no.vtkhdf")},
                  "division hybrid of a 5D image; expected kuhn or symmetric", 2);
+  // periodic axes: wrapped in .vtkhdf, unrolled on request; cut along and across the period
+  ASSERT_EQ(run_tegl({"sample", "ball", "--dim", "5", "--size", "4", "-o", path("four.nrrd"), "-q"}).exit, 0);
+  const auto periodic = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"contour",   path("four.nrrd"), "--iso", "-0.5", "--division",
+                                          "kuhn",      "--periodic",      "x,y",   "-o",   path("p.vtkhdf"),
+                                          "--normals", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult made = run_tegl(arguments);
+    EXPECT_EQ(made.exit, 0) << made.err;
+    return made.json();
+  };
+  EXPECT_EQ(periodic({"--close"})["boundary_simplices"], 0);
+  EXPECT_EQ(read_mesh(path("p.vtkhdf")).periods.size(), 2 * 11u);
+  EXPECT_GT(periodic({"--close", "--unroll"})["boundary_simplices"], 0);
+  for (const char* const place : {"u=0.2", "x=0.1"}) {
+    const RunResult part = run_tegl({"slice", path("four.nrrd"), "--iso", "-0.5", "--division", "kuhn", "--periodic",
+                                     "x,y", "--close", "--at", place, "-o", path("cut.vtkhdf"), "--json"});
+    ASSERT_EQ(part.exit, 0) << part.err;
+    EXPECT_GT(part.json()["simplices"], 100);
+    EXPECT_EQ(part.json()["boundary_simplices"] == 0, place[0] == 'u');
+  }
   const RunResult about = run_tegl({"info", path("five.vtkhdf"), "--json"});
   ASSERT_EQ(about.exit, 0) << about.err;
   EXPECT_EQ(about.json()["image_dim"], 5);

@@ -727,9 +727,30 @@ TEST_F(PeriodicCommand, CellsMayBeDivided) {
     EXPECT_EQ(check(to_contour<3>(read_mesh(output))).components, 2u);
   }
   expect_refused({"--division", "kuhn", "--lattice", "bcc", "-o", output}, "--lattice bcc with --division kuhn");
-  expect_refused({"--division", "kuhn", "--periodic", "x", "-o", output}, "--periodic x with --division kuhn");
+  expect_refused({"--division", "kuhn", "--facets", "-o", output}, "--division kuhn with --facets");
+  expect_refused({"--division", "kuhn", "--normals", "context", "-o", output}, "normals context of a divided image");
   expect_refused({"--division", "kuhn", "--stream", "-o", output}, "--division kuhn with --stream");
   expect_refused({"--division", "random", "-o", output}, "random");
+}
+
+TEST_F(PeriodicCommand, DividedCellsContinueAcrossTheSeam) {
+  const std::string output = path("divided.vtkhdf");
+  const auto report = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"contour", file_, "--iso", "0", "--periodic", "x", "-o", output};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_json(arguments);
+  };
+  const nlohmann::json plain = report({});
+  for (const char* const division : {"kuhn", "symmetric", "alternating", "hybrid"}) {
+    const nlohmann::json wrapped = report({"--division", division, "--normals", "sobel"});
+    EXPECT_EQ(wrapped["components"], plain["components"]) << division;
+    EXPECT_EQ(wrapped["euler"], plain["euler"]) << division;
+    EXPECT_EQ(wrapped["boundary_simplices"] == 0, plain["boundary_simplices"] == 0) << division;
+    const Contour<3, double> contour = to_contour<3>(read_mesh(output));
+    EXPECT_EQ(contour.periods.size(), 1u);
+    EXPECT_EQ(contour.normals.size(), contour.vertices.size());
+    EXPECT_GT(report({"--division", division, "--unroll"})["vertices"], wrapped["vertices"]) << division;
+  }
 }
 
 TEST_F(PeriodicCommand, MeshesAreClosedAndHaveNormalsFromTheGradient) {

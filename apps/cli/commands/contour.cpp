@@ -156,7 +156,7 @@ class ContourCommand final : public Command {
       options.work.progress = bar.stage("contour");
       const auto finished = [&](auto extraction) {
         result.stats = extraction.stats;
-        return to_mesh(std::move(extraction.contour));
+        return to_mesh(unrolled_for(std::move(extraction.contour), result.output, given_.unroll));
       };
       const bool single_precision = given_.extraction.single_precision();
       result.mesh = given_.positions.are_linear()

@@ -118,20 +118,19 @@ class MeasureCommand final : public ContourInputCommand {
       if (cuts.empty() && (samples_ == 0 || contour.simplices.empty())) return found;
       CutAxis extent{input.axis_name(N - 1), whole.lowest[N - 1], whole.highest[N - 1]};
       CutAxis axis = input.last_axis.value_or(extent);
-      if constexpr (N <= 4)
-        if (crosses_period(contour, Hyperplane<N>::across(N - 1, 0.0))) {
-          remark(kUnrolledForCuts);
-          const Contour<N, double> unrolled = unroll(contour).contour;
-          extent.first = std::numeric_limits<double>::infinity();
-          extent.last = -extent.first;
-          for (const auto& x : unrolled.vertices) {
-            extent.first = std::min(extent.first, x[N - 1]);
-            extent.last = std::max(extent.last, x[N - 1]);
-          }
-          axis = unrolled_axis(input.last_axis.value_or(extent), N - 1, contour.periods);
-          found.cuts = measured_cuts(unrolled, input, cuts, axis, extent, bar);
-          return found;
+      if (crosses_period(contour, Hyperplane<N>::across(N - 1, 0.0))) {
+        remark(kUnrolledForCuts);
+        const Contour<N, double> unrolled = unroll(contour).contour;
+        extent.first = std::numeric_limits<double>::infinity();
+        extent.last = -extent.first;
+        for (const auto& x : unrolled.vertices) {
+          extent.first = std::min(extent.first, x[N - 1]);
+          extent.last = std::max(extent.last, x[N - 1]);
         }
+        axis = unrolled_axis(input.last_axis.value_or(extent), N - 1, contour.periods);
+        found.cuts = measured_cuts(unrolled, input, cuts, axis, extent, bar);
+        return found;
+      }
       found.cuts = measured_cuts(contour, input, cuts, axis, extent, bar);
     }
     return found;

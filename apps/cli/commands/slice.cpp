@@ -111,8 +111,7 @@ Wrapped cut_contour_of(Contour<N, Real> contour, const std::vector<double>& fact
       hyperplanes.push_back(hyperplane_of<N>(*results[end].cut, factors));
     Stopwatch watch;
     const bool is_across = crosses_period(contour, hyperplanes.front());
-    if constexpr (N <= 4)
-      if (is_across && !unrolled) unrolled = unroll(contour).contour;
+    if (is_across && !unrolled) unrolled = unroll(contour).contour;
     auto cuts = slice_stack(is_across ? *unrolled : contour, hyperplanes, {own.threads(), bar.stage("slice")});
     for (std::size_t i = 0; i < cuts.size(); ++i) {
       ContourResult& result = results[first + i];
@@ -461,6 +460,7 @@ class SliceCommand final : public Command {
       refuse_attributes_on_lattices(attributes_, tiling);
     } else {
       options_.require_to_5d();
+      if (!tiling.periodic.empty()) space = space_of_periods(input.image, tiling.periodic);
     }
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);

@@ -103,27 +103,38 @@ CutSpace space_of_cells(const AnyImage& image, const CellFaces& faces) {
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
 }
 
+namespace {
+
+template <Value T, int N>
+CutSpace space_of_longer(const OwnedImage<T, N>& owned, const std::vector<std::string>& periodic) {
+  Grid<N> grid = owned.grid;
+  const AxisPeriods<N> periods = periods_of(grid, periodic);
+  std::array<bool, N> is_longer{};
+  for (std::size_t a = 0; a < N; ++a) {
+    Axis& axis = grid.axes[a];
+    // shorter periods are errors of the extraction
+    is_longer[a] = periods[a] > std::abs(axis[axis.size() - 1] - axis[0]);
+    if (is_longer[a]) axis = with_repeated_sample(axis, periods[a]);
+  }
+  CutSpace space = space_of(grid);
+  // a coordinate is modulo the period if it depends on one axis of the image only
+  for (std::size_t a = 0; a < N; ++a) {
+    bool is_own = is_longer[a];
+    for (std::size_t b = 0; b < N; ++b) is_own = is_own && (b == a || grid.linear[a][b] == 0.0);
+    if (is_own) space.axes[a].period = space.axes[a].last - space.axes[a].first;
+  }
+  return space;
+}
+
+}  // namespace
+
 CutSpace space_of_periods(const AnyImage& image, const std::vector<std::string>& periodic) {
-  const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
-    Grid<N> grid = owned.grid;
-    const AxisPeriods<N> periods = periods_of(grid, periodic);
-    std::array<bool, N> is_longer{};
-    for (std::size_t a = 0; a < N; ++a) {
-      Axis& axis = grid.axes[a];
-      // shorter periods are errors of the extraction
-      is_longer[a] = periods[a] > std::abs(axis[axis.size() - 1] - axis[0]);
-      if (is_longer[a]) axis = with_repeated_sample(axis, periods[a]);
-    }
-    CutSpace space = space_of(grid);
-    // a coordinate is modulo the period if it depends on one axis of the image only
-    for (std::size_t a = 0; a < N; ++a) {
-      bool is_own = is_longer[a];
-      for (std::size_t b = 0; b < N; ++b) is_own = is_own && (b == a || grid.linear[a][b] == 0.0);
-      if (is_own) space.axes[a].period = space.axes[a].last - space.axes[a].first;
-    }
-    return space;
-  };
+  const auto of_owned = [&](const auto& owned) { return space_of_longer(owned, periodic); };
   return std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+CutSpace space_of_periods(const AnyImage5d& image, const std::vector<std::string>& periodic) {
+  return std::visit([&](const auto& owned) { return space_of_longer(owned, periodic); }, image);
 }
 
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
@@ -183,7 +194,7 @@ std::string unroll_input(ContourInput& input) {
   return std::visit(
       [&]<int N>(Contour<N, double>& contour) -> std::string {
         if (contour.periods.empty()) return "";
-        if constexpr (N <= 4) contour = unroll(contour).contour;
+        contour = unroll(contour).contour;
         return "the contour is unrolled: it ends at both ends of its periodic axes";
       },
       input.contour);

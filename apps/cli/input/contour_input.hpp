@@ -68,6 +68,7 @@ CutSpace space_of_cells(const AnyImage& image, const CellFaces& faces);
 
 /// As space_of, over the whole periods of the axes of --periodic.
 CutSpace space_of_periods(const AnyImage& image, const std::vector<std::string>& periodic);
+CutSpace space_of_periods(const AnyImage5d& image, const std::vector<std::string>& periodic);
 
 /// Reads a saved contour with finite coordinates. Throws EmptyResult if it has no simplices, unless `allow_empty`.
 Mesh read_saved_contour(const std::string& file, const ReadMeshOptions& options, bool allow_empty);

@@ -182,6 +182,7 @@ CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods
 
 template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<3>>&);
 template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<4>>&);
+template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<5>>&);
 
 double within_period(const CutAxis& axis, double place) {
   if (!(axis.period > 0.0) || (place >= axis.first && place <= axis.last)) return place;
@@ -281,6 +282,7 @@ CutSpace space_of(const Mesh& mesh) {
   }
   if (n == 3) unroll_axes(periods_of_numbers<3>(mesh.periods), space);
   if (n == 4) unroll_axes(periods_of_numbers<4>(mesh.periods), space);
+  if (n == 5) unroll_axes(periods_of_numbers<5>(mesh.periods), space);
   return space;
 }
 

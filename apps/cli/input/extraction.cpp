@@ -126,10 +126,7 @@ Tiling ExtractionOptions::tiling() const {
     refuse_lattice_with(cells);
     refuse_division_with(cells);
   }
-  if (!division_.empty()) {
-    refuse_periodic_with("--division " + division_);
-    refuse_lattice_with("--division " + division_);
-  }
+  if (!division_.empty()) refuse_lattice_with("--division " + division_);
   Tiling tiling{periodic(), std::nullopt, std::nullopt, {}, samples_ == "cells"};
   for (const Division division : {Division::kuhn, Division::alternating, Division::symmetric, Division::hybrid})
     if (name_of(division) == division_) tiling.division = division;
@@ -178,7 +175,7 @@ bool ExtractionOptions::knows_periods(const Tiling& tiling) const {
 template <int N>
 std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tiling) const {
   const bool finds = finds_longitudes();
-  const bool may_be_periodic = periodic_.empty() && !tiling.division && !tiling.of_cells;
+  const bool may_be_periodic = periodic_.empty() && !tiling.of_cells;
   if (!finds && !may_be_periodic) return "";
   std::vector<std::string> names;
   for (const int a : longitude_axes<N>(grid, tiling.curved)) {
@@ -320,13 +317,15 @@ ExtractOptions ExtractionOptions::library_options(bool knows_polygons) const {
 
 void ExtractionOptions::require_to_5d() const {
   constexpr const char* kWhat = "an image of 5 axes";
-  refuse_periodic_with(kWhat);
+  if (division_.empty() && !periodic().empty())
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--periodic {} with {}; expected --division kuhn or symmetric with it, or no periodic axes",
+                            fmt::join(periodic_, ","), kWhat));
+  if (finds_longitudes())
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--periodic auto with {}; expected names of axes", kWhat));
   refuse_lattice_with(kWhat);
   if (samples_ == "cells")
     throw Error(ErrorCode::InvalidArgument, fmt::format("--samples-are cells with {}; expected points", kWhat));
-  if (!division_.empty() && !normals_.empty())
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--normals {} with --division and {}; expected no normals", normals_, kWhat));
   if (!division_.empty() && triangulation_ != "compact")
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--triangulation {} with --division and {}; expected compact", triangulation_, kWhat));
@@ -494,6 +493,7 @@ template std::vector<CurvedSeam<4>> seams_of(const Grid<4>&, const std::vector<C
 template AxisPeriods<2> periods_of(const Grid<2>&, const std::vector<std::string>&);
 template AxisPeriods<3> periods_of(const Grid<3>&, const std::vector<std::string>&);
 template AxisPeriods<4> periods_of(const Grid<4>&, const std::vector<std::string>&);
+template AxisPeriods<5> periods_of(const Grid<5>&, const std::vector<std::string>&);
 
 int image_dim(const AnyImage& image) { return static_cast<int>(image.index()) + 2; }
 

@@ -199,16 +199,12 @@ std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<Curve
 /// attribute "original". Other contours are returned unchanged.
 template <int N, class Real>
 Contour<N, Real> unrolled_for(Contour<N, Real> contour, const std::string& output, bool unroll) {
-  if constexpr (N <= 4) {
-    const MeshFileFormat* const format = find_mesh_file_format(output);
-    if (contour.periods.empty() || (!unroll && format != nullptr && format->extension == ".vtkhdf")) return contour;
-    Unrolled<N, Real> result = tegl::unroll(contour);
-    Attribute& attribute = result.contour.vertex_attributes.emplace_back(Attribute{"original", "", 1, {}});
-    attribute.values.assign(result.originals.begin(), result.originals.end());
-    return std::move(result.contour);
-  } else {
-    return contour;  // 5D contours have no periods
-  }
+  const MeshFileFormat* const format = find_mesh_file_format(output);
+  if (contour.periods.empty() || (!unroll && format != nullptr && format->extension == ".vtkhdf")) return contour;
+  Unrolled<N, Real> result = tegl::unroll(contour);
+  Attribute& attribute = result.contour.vertex_attributes.emplace_back(Attribute{"original", "", 1, {}});
+  attribute.values.assign(result.originals.begin(), result.originals.end());
+  return std::move(result.contour);
 }
 
 /// Whether a hyperplane crosses a period of a wrapped contour, which must be unrolled before it is cut there.
@@ -227,6 +223,16 @@ bool crosses_period(const Contour<N, Real>& contour, const Hyperplane<N>& cut) {
 /// The remark on cuts that cross a period.
 inline constexpr const char* kUnrolledForCuts =
     "the contour is unrolled for cuts across a period: it ends at both ends of its periodic axes";
+
+/// Extracts the contour of an image whose cells are divided and passes it to `use`, as extract_and_use.
+template <class Result, class T, int N, class Use>
+Result extract_divided_and_use(const OwnedImage<T, N>& owned, double isovalue, const ExtractOptions& options,
+                               bool single_precision, const Use& use, const Tiling& tiling) {
+  const AxisPeriods<N> periods = periods_of(owned.grid, tiling.periodic);
+  if (single_precision)
+    return use(extract_divided_with_stats<float>(owned.view(), *tiling.division, isovalue, options, periods));
+  return use(extract_divided_with_stats<double>(owned.view(), *tiling.division, isovalue, options, periods));
+}
 
 /// Extracts the contour of an image of any type and passes it to `use`, as Extraction<N, float> or
 /// Extraction<N, double>.
@@ -251,11 +257,8 @@ Result extract_and_use(const AnyImage& image, double isovalue, const ExtractOpti
         return use(extract_lattice_with_stats<float>(owned.view(), *tiling.lattice, isovalue, options, periods));
       return use(extract_lattice_with_stats<double>(owned.view(), *tiling.lattice, isovalue, options, periods));
     }
-    if (tiling.division) {
-      if (single_precision)
-        return use(extract_divided_with_stats<float>(owned.view(), *tiling.division, isovalue, options));
-      return use(extract_divided_with_stats<double>(owned.view(), *tiling.division, isovalue, options));
-    }
+    if (tiling.division)
+      return extract_divided_and_use<Result>(owned, isovalue, options, single_precision, use, tiling);
     if (!tiling.periodic.empty()) {
       const AxisPeriods<N> periods = periods_of(owned.grid, tiling.periodic);
       if (single_precision) return use(extract_periodic_with_stats<float>(owned.view(), periods, isovalue, options));
@@ -273,11 +276,8 @@ Result extract_and_use(const AnyImage5d& image, double isovalue, const ExtractOp
                        const Use& use, const Tiling& tiling = {}) {
   return std::visit(
       [&](const auto& owned) -> Result {
-        if (tiling.division) {
-          if (single_precision)
-            return use(extract_divided_with_stats<float>(owned.view(), *tiling.division, isovalue, options));
-          return use(extract_divided_with_stats<double>(owned.view(), *tiling.division, isovalue, options));
-        }
+        if (tiling.division)
+          return extract_divided_and_use<Result>(owned, isovalue, options, single_precision, use, tiling);
         if (single_precision) return use(extract_with_stats<float>(owned.view(), isovalue, options));
         return use(extract_with_stats<double>(owned.view(), isovalue, options));
       },

@@ -11,6 +11,7 @@
 
 #include "tegl/complex.hpp"
 #include "tegl/image.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl {
 
@@ -46,34 +47,47 @@ requires DimensionBetween<N, 2, 4>
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Extraction<N, Real> extract_divided_with_stats(const Image<T, N>& image, Division division,
-                                                             double isovalue, const ExtractOptions& options = {});
+                                                             double isovalue, const ExtractOptions& options = {},
+                                                             const AxisPeriods<N>& periods = {});
 
 /// Extracts the contour of an image whose cells are divided. In 2D to 4D it is the contour of `divided_complex`. In 5D
-/// the simplices are not stored; the contour is an oriented manifold with a boundary at the image border only. Its
-/// vertices lie on the edges of the division, in the order of the cells, and if samples equal the isovalue, they are
-/// kept off the layers of the last two axes as by `extract`. Between two simplices of high and of low points, a
-/// simplex has the monotone paths through the product of the two, with points in the order of their coordinates, the
-/// last axis first. So contours do not intersect themselves, and their cut at a layer is, up to diagonals, the divided
-/// contour of the layer.
+/// the simplices are not stored; the contour is an oriented manifold with a boundary at the image border and at missing
+/// values only. Its vertices lie on the edges of the division, in the order of the cells, and if samples equal the
+/// isovalue, they are kept off the layers of the last two axes as by `extract`. Between two simplices of high and of
+/// low points, a simplex has the monotone paths through the product of the two, with points in the order of their
+/// coordinates, the last axis first. So contours do not intersect themselves, and their cut at a layer is, up to
+/// diagonals, the divided contour of the layer.
 ///
-/// Options in 5D: direction, close, epsilon and work; nothing is ambiguous, so `ambiguity` has no effect. Errors: those
-/// of `divided_complex` and of `extract` of complexes; in 5D UnsupportedData for missing values (also for the mean of
-/// infinite samples of both signs), InvalidArgument for normals and for other triangulations. Time in 5D: a pass
-/// over the samples, and some microseconds (kuhn) or tens of microseconds (symmetric) per active cell. Memory beside
-/// the contour: 70 bytes (kuhn) or 270 (symmetric) per active cell. The result does not depend on the number of
-/// threads.
+/// Simplices with a missing corner are left out. The centre of a face with a missing corner is missing, too, so
+/// `symmetric` leaves out whole cells, and so is the mean of infinite samples of both signs. Beside them the contour is
+/// made a manifold as by `extract`.
+///
+/// `periods`: of periodic axes (tegl/periodic.hpp; 0: not periodic). Cells across the seam connect the last samples to
+/// the first ones, and the contour is wrapped (Contour::periods). `alternating` needs an even number of samples along
+/// them.
+///
+/// Normals are the image's gradients, of all kinds but `context`: in 2D to 4D linear along the edges of the division,
+/// with means at centres; in 5D multilinear in the cell. They use the neighbours across the seam; the samples of an
+/// image with periodic axes are copied for them.
+///
+/// In 5D nothing is ambiguous, and `ambiguity` has no effect. Errors: those of `divided_complex`, of `extract` of
+/// complexes and of `extract_periodic`; InvalidArgument for normals by context, for an odd number of samples along a
+/// periodic axis with `alternating`, and in 5D for other triangulations than compact. Time in 5D: two passes over the
+/// samples, and some microseconds (kuhn) or tens of microseconds (symmetric) per active cell. Memory beside the
+/// contour: 80 bytes (kuhn) or 280 (symmetric) per active cell, for a moment one byte per sample, and with missing
+/// values five bytes per sample. The result does not depend on the number of threads.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Contour<N, Real> extract_divided(const Image<T, N>& image, Division division, double isovalue,
-                                               const ExtractOptions& options = {}) {
-  return extract_divided_with_stats<Real>(image, division, isovalue, options).contour;
+                                               const ExtractOptions& options = {}, const AxisPeriods<N>& periods = {}) {
+  return extract_divided_with_stats<Real>(image, division, isovalue, options, periods).contour;
 }
 
-/// Counts the vertices and simplices that `extract_divided` would make, exactly. Errors: as `extract_divided`
-/// except TooLarge in 5D.
+/// Counts the vertices and simplices that `extract_divided` would make, exactly; with periods in 2D to 4D and with
+/// missing values by making them. Errors: as `extract_divided` except TooLarge in 5D.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] ContourSize count_divided(const Image<T, N>& image, Division division, double isovalue,
-                                        const ExtractOptions& options = {});
+                                        const ExtractOptions& options = {}, const AxisPeriods<N>& periods = {});
 
 }  // namespace tegl

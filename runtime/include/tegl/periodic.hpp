@@ -22,13 +22,13 @@ using AxisPeriods = std::type_identity_t<Vector<N>>;
 /// step; along an uneven axis, the length plus the mean step. Errors: InvalidArgument for an axis that the grid does
 /// not have.
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] AxisPeriods<N> sample_periods(const Grid<N>& grid, std::span<const int> axes);
 
 /// The periods of longitudes: 360 for each even axis with a unit of degrees_east (also degree_east, degree_E,
 /// degrees_E, degreeE, degreesE) whose samples span 360 degrees without repeating the first one; 0 for the others.
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] AxisPeriods<N> longitude_periods(const Grid<N>& grid);
 
 /// Periods as numbers, as files store them: for each `vector`, `dual` and `start`.
@@ -90,7 +90,7 @@ requires DimensionBetween<N, 2, 4>
 
 /// A contour whose vertices on the seam are doubled.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 struct Unrolled {
   Contour<N, Real> contour = {};  ///< without periods
   Buffer<Index> originals = {};   ///< by vertex: its number in the wrapped contour; equal ones are one point
@@ -103,7 +103,7 @@ struct Unrolled {
 /// A contour without periods is returned unchanged. Errors: InvalidArgument for a contour that is not sound; TooLarge.
 /// O(V + S) time, for each round of copies.
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Unrolled<N, Real> unroll(const Contour<N, Real>& contour);
 
 }  // namespace tegl

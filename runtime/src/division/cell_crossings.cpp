@@ -79,6 +79,8 @@ void CellCrossings<N>::add_simplices(const DividedCell<N>& cell) {
     for (int j = 0; j <= N; ++j)
       simplex.points[j] = static_cast<std::uint8_t>(point_at(cell_point(cell.points[numbers[j]], N).doubled));
     std::sort(simplex.points.begin(), simplex.points.end());
+    for (const std::uint8_t p : simplex.points)
+      if (points_[p].face.axes == 0) simplex.corners |= std::uint32_t{1} << points_[p].face.low;
     simplex.is_positive = is_positive<N>(points_, simplex.points);
     for (int i = 0; i <= N; ++i)
       for (int j = i + 1; j <= N; ++j)
@@ -110,6 +112,10 @@ void CellCrossings<N>::add_sides() {
 
 template <int N>
 void CellCrossings<N>::find_next() {
+  simplices_at_.resize(edges());
+  for (std::size_t s = 0; s < simplices_.size(); ++s)
+    for (const std::uint16_t edge : simplices_[s].crossings)
+      simplices_at_[edge].push_back(static_cast<std::uint16_t>(s));
   in_next_.assign(count() << N, 0);
   const auto in_next_cell = [&](std::uint8_t p, unsigned along) {
     std::array<std::uint8_t, 5> doubled = points_[p].doubled;
@@ -117,16 +123,29 @@ void CellCrossings<N>::find_next() {
       if ((along >> a & 1u) != 0) doubled[a] = 0;
     return static_cast<std::uint8_t>(point_at(doubled));
   };
+  const auto in_first_cell = [&](std::uint8_t p, unsigned behind) {
+    std::array<std::uint8_t, 5> doubled = points_[p].doubled;
+    for (int a = 0; a < N; ++a)
+      if ((behind >> a & 1u) != 0) doubled[a] = 2;
+    return static_cast<std::uint8_t>(point_at(doubled));
+  };
   for (std::size_t c = 0; c < count(); ++c) {
     const bool is_edge = c < edges();
     const std::uint8_t first = is_edge ? edges_[c][0] : static_cast<std::uint8_t>(c - edges());
     const std::uint8_t second = is_edge ? edges_[c][1] : first;
     upper_.push_back(static_cast<std::uint8_t>(points_[first].upper & points_[second].upper));
+    unsigned behind = 0;
+    for (int a = 0; a < N; ++a)
+      behind |= unsigned{points_[first].doubled[a] == 0 && points_[second].doubled[a] == 0} << a;
+    fixed_.push_back(static_cast<std::uint8_t>(upper_.back() | behind));
+    const std::uint8_t from = in_first_cell(first, behind);
+    in_first_.push_back(is_edge ? edge_between(from, in_first_cell(second, behind))
+                                : static_cast<std::uint16_t>(edges() + from));
     for (unsigned along = 0; along < 1u << N; ++along) {
       if ((along & ~unsigned{upper_.back()}) != 0) continue;
-      const std::uint8_t from = in_next_cell(first, along);
+      const std::uint8_t start = in_next_cell(first, along);
       in_next_[(c << N) + along] =
-          is_edge ? edge_between(from, in_next_cell(second, along)) : static_cast<std::uint16_t>(edges() + from);
+          is_edge ? edge_between(start, in_next_cell(second, along)) : static_cast<std::uint16_t>(edges() + start);
     }
   }
 }

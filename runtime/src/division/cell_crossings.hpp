@@ -26,10 +26,6 @@ struct CellPoint {
   std::uint64_t sides = 0;                ///< bit a: at the lower end of axis a; bit 8 + a: at the upper end
 };
 
-/// A set of crossings or points of a cell.
-template <std::size_t Words>
-using CellBits = std::array<std::uint64_t, Words>;
-
 /// The division of a cell, with the edges of its simplices. Crossings are numbered: first the edges, then the points,
 /// which are crossings of caps.
 template <int N>
@@ -41,7 +37,10 @@ class CellCrossings {
     /// Numbers of the points, ascending. A cone's first vertex is its apex, which has no number.
     std::array<std::uint8_t, N + 1> points;
     bool is_positive;                             ///< its orientation
+    std::uint32_t corners = 0;                    ///< those of the cell that it has; of a cone, those of its simplex
     std::array<std::uint16_t, kPairs> crossings;  ///< by edge (edge_number)
+    /// Whether it is left out, as some corners are missing.
+    [[nodiscard]] bool is_without(std::uint32_t missing) const noexcept { return (corners & missing) != 0; }
   };
   /// The cones over the simplices on one side of the cell.
   struct Side {
@@ -63,6 +62,20 @@ class CellCrossings {
   [[nodiscard]] const std::array<std::uint8_t, 2>& ends(std::size_t edge) const noexcept { return edges_[edge]; }
   /// Bit a: the crossing is at the upper end of axis a. Then the next cell along the axis has it, too.
   [[nodiscard]] unsigned upper(std::size_t crossing) const noexcept { return upper_[crossing]; }
+  /// The simplices at an edge.
+  [[nodiscard]] const std::vector<std::uint16_t>& simplices_at(std::size_t edge) const noexcept {
+    return simplices_at_[edge];
+  }
+  /// The axes along which all points of the crossing have the same place; the cells around it differ along these.
+  [[nodiscard]] unsigned fixed(std::size_t crossing) const noexcept { return fixed_[crossing]; }
+  /// The fixed axes along which this cell is behind the crossing.
+  [[nodiscard]] unsigned place(std::size_t crossing) const noexcept {
+    return fixed_[crossing] & ~unsigned{upper_[crossing]};
+  }
+  /// The number of a crossing in the cell around it that is behind it along the axes `place`, which are fixed.
+  [[nodiscard]] std::size_t at_place(std::size_t crossing, unsigned place) const noexcept {
+    return in_next(in_first_[crossing], place);
+  }
   /// The number of a crossing in the next cell along the axes `along`, which are in upper(crossing).
   [[nodiscard]] std::size_t in_next(std::size_t crossing, unsigned along) const noexcept {
     return in_next_[(crossing << N) + along];
@@ -81,7 +94,9 @@ class CellCrossings {
   std::vector<std::uint16_t> edge_of_;  ///< by points: number + 1, or 0
   std::vector<Simplex> simplices_;
   std::vector<Side> sides_;
-  std::vector<std::uint8_t> upper_;
+  std::vector<std::vector<std::uint16_t>> simplices_at_;
+  std::vector<std::uint8_t> upper_, fixed_;
+  std::vector<std::uint16_t> in_first_;  ///< the number in the cell that is before it along all fixed axes
   std::vector<std::uint16_t> in_next_;
 };
 

@@ -7,7 +7,9 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -17,8 +19,13 @@
 
 #include "complex/contour_numbers.hpp"
 #include "complex/image_points.hpp"
+#include "complex/point_gradients.hpp"
 #include "division/divided_cell.hpp"
 #include "division/divided_contour.hpp"
+#include "image/row_source.hpp"
+#include "kernel/extract_normals.hpp"
+#include "periodic/periodic_layers.hpp"
+#include "periodic/periods.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl {
@@ -52,6 +59,9 @@ class Divider {
     for (std::size_t& size : cells) --size;
     detail::for_each_sample<N>(cells, work);
   }
+
+  /// The faces whose centres are points, in their order behind the samples: the axes, and the lowest corner.
+  [[nodiscard]] const std::vector<std::pair<unsigned, Index>>& centres() const noexcept { return faces_; }
 
   [[nodiscard]] Complex<N> complex() && {
     Complex<N> result = types_.empty() ? Complex<N>(std::move(points_), kSimplex[N - 2], corners_)
@@ -156,6 +166,7 @@ class Divider {
     if (points_.size() >= std::numeric_limits<Index>::max())
       throw Error(ErrorCode::TooLarge, "2^32 points of a divided image or more; expected fewer");
     points_.push_back(place(at, face));
+    faces_.emplace_back(face.axes, corner(at, face.low));
     std::vector<double> values;
     for (const unsigned mask : detail::corner_masks(face)) values.push_back(values_[corner(at, mask)]);
     values_.push_back(detail::mean_of_corners(values));
@@ -185,11 +196,19 @@ class Divider {
   std::vector<CellType> types_;  ///< empty: all cells are simplices
   std::vector<Index> corners_;
   std::vector<Index> numbers_;                                      ///< of the points of a cell
+  std::vector<std::pair<unsigned, Index>> faces_;                   ///< see `centres`
   std::array<std::unordered_map<Index, Index>, kAll + 1> centres_;  ///< by axes and lowest corner
 };
 
+/// A complex with the faces of which its points behind the samples are centres: the axes, and the lowest corner.
 template <int N>
-Complex<N> divided(const Grid<N>& grid, std::vector<double> values, Division division, double isovalue) {
+struct DividedImage {
+  Complex<N> complex;
+  std::vector<std::pair<unsigned, Index>> centres;
+};
+
+template <int N>
+DividedImage<N> divided(const Grid<N>& grid, std::vector<double> values, Division division, double isovalue) {
   const detail::DividedCell<N> cell(division);
   Divider<N> divider(grid, std::move(values));
   divider.for_cells([&](const std::array<std::size_t, N>& at) {
@@ -203,7 +222,64 @@ Complex<N> divided(const Grid<N>& grid, std::vector<double> values, Division div
         return divider.add_hybrid(at, isovalue);
     }
   });
-  return std::move(divider).complex();
+  auto centres = divider.centres();
+  return {std::move(divider).complex(), std::move(centres)};
+}
+
+/// The index of a sample by its number.
+template <int N>
+std::array<std::size_t, N> index_of(std::size_t number, const std::array<std::size_t, N>& sizes) {
+  std::array<std::size_t, N> index;
+  for (int a = 0; a < N; ++a) {
+    index[a] = number % sizes[a];
+    number /= sizes[a];
+  }
+  return index;
+}
+
+/// The cells of an image with periodic axes: those of a longer one, of which samples and centres of the last layer are
+/// those of the first.
+template <Value T, int N>
+DividedImage<N> divided_periodic(const Image<T, N>& image, Division division, double isovalue,
+                                 const AxisPeriods<N>& periods) {
+  const Grid<N>& grid = image.grid();
+  const Grid<N> longer = detail::longer_grid(grid, periods);
+  (void)detail::count_samples(longer, "a divided image with periodic axes");
+  const auto sizes = grid.sizes(), longer_sizes = longer.sizes();
+  const auto wrapped = [&](std::array<std::size_t, N> index) {
+    for (int a = 0; a < N; ++a) index[a] %= sizes[a];
+    return index;
+  };
+  std::vector<double> values;
+  std::vector<Index> number;
+  detail::for_each_sample<N>(longer_sizes, [&](const std::array<std::size_t, N>& index) {
+    values.push_back(static_cast<double>(image(wrapped(index))));
+    number.push_back(static_cast<Index>(detail::number_of<N>(grid, wrapped(index))));
+  });
+  const DividedImage<N> of_longer = divided(longer, std::move(values), division, isovalue);
+  // the points, without those of the last layers
+  std::vector<std::pair<unsigned, Index>> centres;
+  std::vector<std::array<double, N>> points(detail::count_samples(grid, "a divided image"));
+  std::vector<double> of_points(points.size());
+  for (std::size_t p = 0; p < number.size(); ++p) {
+    const auto index = index_of<N>(p, longer_sizes);
+    if (index != wrapped(index)) continue;
+    points[number[p]] = of_longer.complex.points()[p];
+    of_points[number[p]] = of_longer.complex.values()[p];
+  }
+  std::map<std::pair<unsigned, Index>, Index> known;
+  for (const auto& [axes, lowest] : of_longer.centres) {
+    const std::pair face{axes, number[lowest]};
+    const auto [at, is_new] = known.try_emplace(face, static_cast<Index>(points.size()));
+    if (is_new) {
+      points.push_back(of_longer.complex.points()[number.size()]);
+      of_points.push_back(of_longer.complex.values()[number.size()]);
+      centres.push_back(face);
+    }
+    number.push_back(at->second);
+  }
+  return {detail::ComplexAccess::identified<N>(of_longer.complex, std::move(points), std::move(of_points), number),
+          std::move(centres)};
 }
 
 }  // namespace
@@ -216,6 +292,11 @@ std::string_view name_of(Division division) noexcept {
 
 namespace {
 
+template <int N>
+[[nodiscard]] bool any_periodic(const AxisPeriods<N>& periods) {
+  return std::ranges::any_of(periods, [](double period) { return period != 0.0; });
+}
+
 /// Throws InvalidArgument for divisions that the dimension does not have.
 void require_division(Division division, int dim) {
   if (dim >= 4 && (division == Division::alternating || division == Division::hybrid))
@@ -223,26 +304,128 @@ void require_division(Division division, int dim) {
                 fmt::format("division {} of a {}D image; expected kuhn or symmetric", name_of(division), dim));
 }
 
-/// Throws the errors of options that 5D contours of divided images do not have.
-void require_options_in_5d(double isovalue, const ExtractOptions& options) {
-  detail::check_complex_options(isovalue, options);
-  if (options.normals != Normals::none)
-    throw Error(ErrorCode::InvalidArgument, "normals of a divided 5D image; expected none");
-  if (options.triangulation != Triangulation::compact)
+/// Throws the errors of arguments that contours of divided images do not have.
+template <int N>
+void require_arguments(const Grid<N>& grid, Division division, double isovalue, const ExtractOptions& options,
+                       const AxisPeriods<N>& periods) {
+  require_division(division, N);
+  ExtractOptions of_complexes = options;
+  of_complexes.normals = Normals::none;
+  detail::check_complex_options(isovalue, of_complexes);
+  if (options.normals == Normals::context)
+    throw Error(ErrorCode::InvalidArgument, "normals context of a divided image; expected gradients of other kinds");
+  if (N == 5 && options.triangulation != Triangulation::compact)
     throw Error(ErrorCode::InvalidArgument, "triangulation barycentric of a divided 5D image; expected compact");
+  if (!any_periodic<N>(periods)) return;
+  detail::check_periods<N>(grid, periods, options);
+  for (int a = 0; a < N; ++a)
+    if (division == Division::alternating && periods[a] != 0.0 && grid.axes[a].size() % 2 != 0)
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("division alternating: {} is periodic and has {} samples; expected an even number, as "
+                              "neighbouring cells are mirror images",
+                              detail::label_of_axis(grid.axes[a], a), grid.axes[a].size()));
+}
+
+/// The gradients at the samples of an image. With periodic axes, from a copy with one more sample before and two more
+/// behind along these.
+template <Value T, int N>
+class ImageGradients {
+ public:
+  using Sample = std::array<std::size_t, N>;
+
+  /// `image` must outlive this object.
+  ImageGradients(const Image<T, N>& image, const AxisPeriods<N>& periods) : view_(image) {
+    if (!any_periodic<N>(periods)) return;
+    wider_.grid = image.grid();
+    for (int a = 0; a < N; ++a) {
+      if (periods[a] == 0.0) continue;
+      before_[a] = 1;
+      wider_.grid.axes[a] = detail::wrapped_axis(image.grid().axes[a], periods[a], 1, 2);
+    }
+    detail::for_each_sample<N>(wider_.grid.sizes(), [&](Sample index) {
+      for (int a = 0; a < N; ++a) index[a] = (index[a] + image.size(a) - before_[a]) % image.size(a);
+      wider_.values.push_back(image(index));
+    });
+    view_ = wider_.view();
+  }
+  ImageGradients(const ImageGradients&) = delete;
+  ImageGradients& operator=(const ImageGradients&) = delete;
+
+  [[nodiscard]] const Image<T, N>& view() const noexcept { return view_; }
+  [[nodiscard]] const Sample& before() const noexcept { return before_; }
+
+ private:
+  OwnedImage<T, N> wider_;
+  Image<T, N> view_;
+  Sample before_{};
+};
+
+/// Extracts the contour of a complex of a divided image.
+template <class Real, Value T, int N>
+Extraction<N, Real> extract_stored(const Image<T, N>& image, Division division, double isovalue, ExtractOptions options,
+                                   const AxisPeriods<N>& periods) {
+  const Grid<N>& grid = image.grid();
+  const std::size_t samples = detail::count_samples(grid, "a divided image");
+  const bool is_periodic = any_periodic<N>(periods);
+  const DividedImage<N> made = is_periodic ? divided_periodic(image, division, isovalue, periods)
+                                           : divided(grid, detail::values_of(image), division, isovalue);
+  detail::Surroundings<N> around;
+  if (is_periodic) around.periods = detail::world_periods<N>(grid, periods);
+  if (options.normals == Normals::none) return detail::extract_in<Real>(made.complex, isovalue, options, around);
+  // normals from the gradients at samples, with means at centres
+  const ImageGradients<T, N> gradients(image, periods);
+  const detail::ImageSource<T, N> source(gradients.view(), isovalue, options.epsilon);
+  const detail::NormalWriter<N, double> at_samples(source, gradients.view().grid(), GradientDirection::ascent,
+                                                   options.normals, options.kernel);
+  const auto sizes = grid.sizes();
+  const auto at = [&](std::array<std::size_t, N> index) {
+    for (int a = 0; a < N; ++a) index[a] = index[a] % sizes[a] + gradients.before()[a];
+    return at_samples.in_world_at(index);
+  };
+  around.gradient = [&](Index p) {
+    if (p < samples) return at(index_of<N>(p, sizes));
+    const auto& [axes, lowest] = made.centres[p - samples];
+    const std::vector<unsigned> corners = detail::corner_masks({0, axes});
+    std::array<double, N> mean{};
+    for (const unsigned corner : corners) {
+      auto index = index_of<N>(lowest, sizes);
+      for (int a = 0; a < N; ++a) index[a] += corner >> a & 1u;
+      const std::array<double, N> gradient = at(index);
+      for (int a = 0; a < N; ++a) mean[a] += gradient[a] / static_cast<double>(corners.size());
+    }
+    return mean;
+  };
+  options.normals = Normals::differences;  // whatever `around.gradient` has
+  return detail::extract_in<Real>(made.complex, isovalue, options, around);
 }
 
 /// The contour of a 5D image, or its size if `contour` is null.
-template <Value T, class Real>
+template <class Real, Value T>
 ExtractedSize extract_in_5d(const Image<T, 5>& image, Division division, double isovalue, const ExtractOptions& options,
-                            Contour<5, Real>* contour) {
-  require_division(division, 5);
-  require_options_in_5d(isovalue, options);
+                            const AxisPeriods<5>& periods, Contour<5, Real>* contour) {
+  const Grid<5>& grid = image.grid();
+  const Grid<5> longer = detail::longer_grid(grid, periods);
+  detail::DividedSamples<5> samples{longer};
+  for (int a = 0; a < 5; ++a) samples.periodic |= unsigned{periods[a] != 0.0} << a;
+  if (samples.periodic != 0) samples.periods = detail::world_periods<5>(grid, periods);
+  std::optional<ImageGradients<T, 5>> gradients;
+  std::optional<detail::ImageSource<T, 5>> source;
+  if (options.normals != Normals::none && contour != nullptr) {
+    gradients.emplace(image, periods);
+    source.emplace(gradients->view(), isovalue, options.epsilon);
+    samples.gradients = &*source;
+    samples.gradient_grid = &gradients->view().grid();
+    samples.before = gradients->before();
+  }
   return detail::extract_divided_cells<5, Real>(
-      image.grid(),
+      samples,
       [&](const std::array<std::size_t, 5>& from, std::size_t count, double* out) {
         std::array<std::size_t, 5> at = from;
-        for (std::size_t i = 0; i < count; ++i, ++at[0]) out[i] = static_cast<double>(image(at));
+        for (int a = 0; a < 5; ++a) at[a] %= image.size(a);
+        for (std::size_t i = 0; i < count; ++i) {
+          out[i] = static_cast<double>(image(at));
+          if (++at[0] == image.size(0)) at[0] = 0;
+        }
       },
       division, isovalue, options, contour);
 }
@@ -254,15 +437,17 @@ requires DimensionBetween<N, 2, 4> Complex<N> divided_complex(const Image<T, N>&
                                                               double isovalue) {
   require_division(division, N);
   (void)detail::count_samples(image.grid(), "a divided image");
-  return divided(image.grid(), detail::values_of(image), division, isovalue);
+  return divided(image.grid(), detail::values_of(image), division, isovalue).complex;
 }
 
 template <Coordinate Real, Value T, int N>
 requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_divided_with_stats(const Image<T, N>& image,
                                                                                   Division division, double isovalue,
-                                                                                  const ExtractOptions& options) {
+                                                                                  const ExtractOptions& options,
+                                                                                  const AxisPeriods<N>& periods) {
+  require_arguments<N>(image.grid(), division, isovalue, options, periods);
   if constexpr (N <= 4) {
-    return extract_with_stats<Real>(divided_complex(image, division, isovalue), isovalue, options);
+    return extract_stored<Real>(image, division, isovalue, options, periods);
   } else {
     Extraction<N, Real> result;
     for (int a = 0; a < N; ++a) {
@@ -270,18 +455,25 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_divided_with_stat
       result.contour.axis_units[a] = image.grid().axes[a].unit;
     }
     result.contour.direction = options.direction;
-    result.stats = extract_in_5d(image, division, isovalue, options, &result.contour).stats;
+    result.stats = extract_in_5d<Real>(image, division, isovalue, options, periods, &result.contour).stats;
     return result;
   }
 }
 
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5> ContourSize count_divided(const Image<T, N>& image, Division division,
-                                                             double isovalue, const ExtractOptions& options) {
-  if constexpr (N <= 4)
-    return count(divided_complex(image, division, isovalue), isovalue, options);
-  else
-    return extract_in_5d<T, float>(image, division, isovalue, options, nullptr).size;
+                                                             double isovalue, const ExtractOptions& asked,
+                                                             const AxisPeriods<N>& periods) {
+  require_arguments<N>(image.grid(), division, isovalue, asked, periods);
+  ExtractOptions options = asked;
+  options.normals = Normals::none;  // not counted: one per vertex
+  if constexpr (N == 5) {
+    return extract_in_5d<float>(image, division, isovalue, options, periods, nullptr).size;
+  } else {
+    if (!any_periodic<N>(periods)) return count(divided_complex(image, division, isovalue), isovalue, options);
+    const Contour<N, float> contour = extract_stored<float>(image, division, isovalue, options, periods).contour;
+    return {contour.vertices.size(), contour.simplices.size()};
+  }
 }
 
 #define TEGL_INSTANTIATE(T)                                                        \
@@ -290,12 +482,13 @@ requires DimensionBetween<N, 2, 5> ContourSize count_divided(const Image<T, N>& 
   template Complex<4> divided_complex<T, 4>(const Image<T, 4>&, Division, double);
 #include "base/instantiate.hpp"
 
-#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                                       \
-  template Extraction<N, float> extract_divided_with_stats<float, T, N>(const Image<T, N>&, Division, double,   \
-                                                                        const ExtractOptions&);                 \
-  template Extraction<N, double> extract_divided_with_stats<double, T, N>(const Image<T, N>&, Division, double, \
-                                                                          const ExtractOptions&);               \
-  template ContourSize count_divided<T, N>(const Image<T, N>&, Division, double, const ExtractOptions&);
+#define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                                              \
+  template Extraction<N, float> extract_divided_with_stats<float, T, N>(const Image<T, N>&, Division, double,          \
+                                                                        const ExtractOptions&, const AxisPeriods<N>&); \
+  template Extraction<N, double> extract_divided_with_stats<double, T, N>(                                             \
+      const Image<T, N>&, Division, double, const ExtractOptions&, const AxisPeriods<N>&);                             \
+  template ContourSize count_divided<T, N>(const Image<T, N>&, Division, double, const ExtractOptions&,                \
+                                           const AxisPeriods<N>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -150,6 +150,11 @@ class NormalWriter {
     return context_at(index, edge).uncertainty;
   }
 
+  /// The gradient at a sample, in the world and on the side of the direction.
+  [[nodiscard]] std::array<double, N> in_world_at(const Index& index) const noexcept {
+    return in_world(gradient_at(index));
+  }
+
   /// Normal at a position in a cell; parameters as in Placement::in_cell.
   template <class Frame>
   [[nodiscard]] Vertex in_cell(const Index& base, const std::array<double, Frame::kDim>& place) const noexcept {

@@ -53,7 +53,7 @@ bool is_longitude(const Axis& axis) {
 }  // namespace
 
 template <int N>
-requires DimensionBetween<N, 2, 4> AxisPeriods<N> sample_periods(const Grid<N>& grid, std::span<const int> axes) {
+requires DimensionBetween<N, 2, 5> AxisPeriods<N> sample_periods(const Grid<N>& grid, std::span<const int> axes) {
   AxisPeriods<N> periods{};
   for (const int a : axes) {
     if (a < 0 || a >= N) refuse(fmt::format("axis {} is periodic; expected 0 to {}", a, N - 1));
@@ -67,7 +67,7 @@ requires DimensionBetween<N, 2, 4> AxisPeriods<N> sample_periods(const Grid<N>& 
 }
 
 template <int N>
-requires DimensionBetween<N, 2, 4> AxisPeriods<N> longitude_periods(const Grid<N>& grid) {
+requires DimensionBetween<N, 2, 5> AxisPeriods<N> longitude_periods(const Grid<N>& grid) {
   AxisPeriods<N> periods{};
   for (std::size_t a = 0; a < N; ++a)
     if (is_longitude(grid.axes[a])) periods[a] = 360.0;
@@ -77,7 +77,7 @@ requires DimensionBetween<N, 2, 4> AxisPeriods<N> longitude_periods(const Grid<N
 namespace detail {
 
 std::string label_of_axis(const Axis& axis, int number) {
-  const std::string name = axis.name.empty() ? std::string(1, "xyzt"[number]) : axis.name;
+  const std::string name = axis.name.empty() ? std::string(1, "xyztu"[number]) : axis.name;
   return fmt::format("axis {} ({})", number, name);
 }
 
@@ -124,6 +124,7 @@ std::vector<Period<N>> world_periods(const Grid<N>& grid, const AxisPeriods<N>& 
 TEGL_INSTANTIATE_PERIODS(2)
 TEGL_INSTANTIATE_PERIODS(3)
 TEGL_INSTANTIATE_PERIODS(4)
+TEGL_INSTANTIATE_PERIODS(5)
 #undef TEGL_INSTANTIATE_PERIODS
 
 }  // namespace detail
@@ -134,13 +135,16 @@ requires DimensionBetween<N, 2, 4> std::vector<Period<N>> contour_periods(const 
   return detail::world_periods(grid, periods);
 }
 
-#define TEGL_INSTANTIATE_PERIODS(N)                                                          \
-  template std::vector<Period<N>> contour_periods<N>(const Grid<N>&, const AxisPeriods<N>&); \
-  template AxisPeriods<N> sample_periods<N>(const Grid<N>&, std::span<const int>);           \
+#define TEGL_INSTANTIATE_PERIODS(N)                                                \
+  template AxisPeriods<N> sample_periods<N>(const Grid<N>&, std::span<const int>); \
   template AxisPeriods<N> longitude_periods<N>(const Grid<N>&);
 TEGL_INSTANTIATE_PERIODS(2)
 TEGL_INSTANTIATE_PERIODS(3)
 TEGL_INSTANTIATE_PERIODS(4)
+TEGL_INSTANTIATE_PERIODS(5)
 #undef TEGL_INSTANTIATE_PERIODS
+template std::vector<Period<2>> contour_periods<2>(const Grid<2>&, const AxisPeriods<2>&);
+template std::vector<Period<3>> contour_periods<3>(const Grid<3>&, const AxisPeriods<3>&);
+template std::vector<Period<4>> contour_periods<4>(const Grid<4>&, const AxisPeriods<4>&);
 
 }  // namespace tegl

@@ -167,5 +167,7 @@ template std::vector<Index> separate_touching_parts<3>(std::span<std::array<Inde
                                                        std::vector<Index>);
 template std::vector<Index> separate_touching_parts<4>(std::span<std::array<Index, 4>>, std::size_t,
                                                        std::vector<Index>);
+template std::vector<Index> separate_touching_parts<5>(std::span<std::array<Index, 5>>, std::size_t,
+                                                       std::vector<Index>);
 
 }  // namespace tegl::detail

@@ -144,13 +144,13 @@ class Unroller {
 }  // namespace
 
 template <int N, Coordinate Real>
-requires DimensionBetween<N, 2, 4> Unrolled<N, Real> unroll(const Contour<N, Real>& contour) {
+requires DimensionBetween<N, 2, 5> Unrolled<N, Real> unroll(const Contour<N, Real>& contour) {
   detail::require_vertices(contour);
   detail::require_attributes(contour);
   return Unroller<N, Real>(contour).run();
 }
 
-#define TEGL_INSTANTIATE_CONTOURS(N, Real) template Unrolled<N, Real> unroll<N, Real>(const Contour<N, Real>&);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) template Unrolled<N, Real> unroll<N, Real>(const Contour<N, Real>&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl

@@ -4,6 +4,7 @@
 // that of complexes in 2D to 4D, and 5D contours are checked by invariants, analytic values and their cuts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -22,6 +23,10 @@
 #include "division/simplex_contour.hpp"
 #include "errors.hpp"
 #include "invariants.hpp"
+#include "periodic/periodic_layers.hpp"
+#include "periodic/periods.hpp"
+#include "tegl/check.hpp"
+#include "tegl/components.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/slice.hpp"
 
@@ -142,15 +147,20 @@ TEST(SimplexContour, IsPositiveForAllValues) {
 /// The contour of an image whose cells are divided, cell by cell as in 5D.
 template <int N>
 Contour<N, double> extract_by_cells(const OwnedImage<double, N>& image, Division division, double isovalue,
-                                    const ExtractOptions& options = {}) {
+                                    const ExtractOptions& options = {}, const AxisPeriods<N>& periods = {}) {
   Contour<N, double> contour;
   contour.direction = options.direction;
   const Image<double, N> view = image.view();
+  const Grid<N> longer = detail::longer_grid(image.grid, periods);
+  detail::DividedSamples<N> samples{longer};
+  for (std::size_t a = 0; a < N; ++a) samples.periodic |= unsigned{periods[a] != 0.0} << a;
+  if (samples.periodic != 0) samples.periods = detail::world_periods<N>(image.grid, periods);
   const ExtractedSize size = detail::extract_divided_cells<N, double>(
-      image.grid,
+      samples,
       [&](const std::array<std::size_t, N>& from, std::size_t count, double* out) {
         std::array<std::size_t, N> at = from;
-        for (std::size_t i = 0; i < count; ++i, ++at[0]) out[i] = view(at);
+        for (std::size_t a = 0; a < N; ++a) at[a] %= view.size(static_cast<int>(a));
+        for (std::size_t i = 0; i < count; ++i, at[0] = (at[0] + 1) % view.size(0)) out[i] = view(at);
       },
       division, isovalue, options, &contour);
   EXPECT_EQ(size.size.vertices, contour.vertices.size());
@@ -259,6 +269,220 @@ TEST(Division5d, AtTheBorderTheContourEndsOrIsClosed) {
   }
 }
 
+/// Noise with this share of missing samples.
+template <int N>
+OwnedImage<double, N> with_missing(std::size_t samples, double share, unsigned seed) {
+  auto image = sampled<N>(samples, [random = std::mt19937(seed), share](const std::array<double, N>&) mutable {
+    const double value = std::uniform_real_distribution<double>()(random);
+    return std::uniform_real_distribution<double>()(random) < share ? std::numeric_limits<double>::quiet_NaN() : value;
+  });
+  return image;
+}
+
+template <int N>
+AxisPeriods<N> all_periodic(const Grid<N>& grid, int axes = N) {
+  std::vector<int> all;
+  for (int a = 0; a < axes; ++a) all.push_back(a);
+  return sample_periods(grid, all);
+}
+
+template <int N>
+void expect_missing_and_periodic_as_complexes(std::size_t samples, double share, int periodic_axes, bool close) {
+  ExtractOptions options;
+  options.close = close;
+  const auto image = with_missing<N>(samples, share, 21);
+  const AxisPeriods<N> periods = periodic_axes == 0 ? AxisPeriods<N>{} : all_periodic<N>(image.grid, periodic_axes);
+  for (const Division division : kDivisions) {
+    SCOPED_TRACE(testing::Message() << N << "D " << name_of(division) << ", missing " << share << ", " << periodic_axes
+                                    << " periodic axes" << (close ? ", closed" : ""));
+    const auto contour = extract_by_cells(image, division, 0.5, options, periods);
+    const auto expected = extract_divided<double>(image.view(), division, 0.5, options, periods);
+    const MeshReport report = expect_oriented_manifold(contour), of_complex = expect_oriented_manifold(expected);
+    EXPECT_GT(of_complex.simplices, 10u);
+    EXPECT_EQ(contour.periods.size(), expected.periods.size());
+    EXPECT_EQ(report.components, of_complex.components);
+    EXPECT_EQ(report.euler, of_complex.euler);
+    if (!close) {
+      EXPECT_EQ(report.vertices, of_complex.vertices);
+      EXPECT_NEAR(measure(contour).size, measure(expected).size, 1e-9 * measure(expected).size);
+    }
+  }
+}
+
+TEST(Division5d, MissingValuesAndPeriodicAxesAreThoseOfComplexes) {
+  for (const bool close : {false, true})
+    for (const double share : {0.0, 0.05, 0.2})
+      for (const int periodic : {0, 1, 2}) {
+        expect_missing_and_periodic_as_complexes<2>(20, share, periodic, close);
+        expect_missing_and_periodic_as_complexes<3>(8, share, periodic, close);
+        expect_missing_and_periodic_as_complexes<4>(5, 0.3 * share, periodic, close);
+      }
+  expect_missing_and_periodic_as_complexes<3>(8, 0.05, 3, false);
+  expect_missing_and_periodic_as_complexes<4>(4, 0.01, 4, false);
+}
+
+TEST(Division5d, BesideMissingValuesTheContourIsAManifold) {
+  for (const Division division : kDivisions)
+    for (const auto& [share, close] : {std::pair{0.003, true}, {0.02, false}, {0.06, true}}) {
+      SCOPED_TRACE(testing::Message() << name_of(division) << ", missing " << share << (close ? ", closed" : ""));
+      ExtractOptions options;
+      options.close = close;
+      const auto image = with_missing<5>(division == Division::kuhn && share < 0.05 ? 4 : 3, share, 31);
+      const auto contour = extract_divided<double>(image.view(), division, 0.5, options);
+      EXPECT_GT(expect_oriented_manifold(contour).simplices, 100u);
+      const ContourSize size = count_divided(image.view(), division, 0.5, options);
+      EXPECT_EQ(size.vertices, contour.vertices.size());
+      EXPECT_EQ(size.simplices, contour.simplices.size());
+    }
+}
+
+TEST(Division5d, KuhnLeavesOutSimplicesWithMissingCornersAndSymmetricWholeCells) {
+  // The sum of the coordinates is 2.3 between the corners of a cell with two and with three ones. The simplices without
+  // the lowest corner do not exist: each has the lowest and the highest corner.
+  OwnedImage<double, 5> image{Grid<5>::unit({2, 2, 2, 2, 2}), {}};
+  for (unsigned v = 0; v < 32; ++v) image.values.push_back(std::popcount(v));
+  const auto whole = extract_divided<double>(image.view(), Division::kuhn, 2.3);
+  image.values[0b00001] = std::numeric_limits<double>::quiet_NaN();
+  // 24 of the 120 paths begin with axis 0
+  const auto rest = extract_divided<double>(image.view(), Division::kuhn, 2.3);
+  EXPECT_EQ(rest.simplices.size() * 5, whole.simplices.size() * 4);
+  EXPECT_TRUE(extract_divided<double>(image.view(), Division::symmetric, 2.3).simplices.empty());
+  image.values[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(extract_divided<double>(image.view(), Division::kuhn, 2.3).simplices.empty());
+}
+
+TEST(Division5d, TheTorusHasClosedContours) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const auto over_torus = [&](std::size_t samples, auto f) {
+    auto image = sampled<5>(samples, [](const std::array<double, 5>&) { return 0.0; });
+    for (Axis& axis : image.grid.axes) axis = Axis::uniform(samples, 0.0, kTurn / static_cast<double>(samples));
+    image.values.clear();
+    detail::for_each_sample<5>(image.grid.sizes(), [&](const std::array<std::size_t, 5>& at) {
+      std::array<double, 5> x;
+      for (std::size_t a = 0; a < 5; ++a) x[a] = image.grid.axes[a][at[a]];
+      image.values.push_back(f(x));
+    });
+    return image;
+  };
+  // two flat T^4
+  const auto flat = over_torus(4, [](const std::array<double, 5>& x) { return std::cos(x[3]); });
+  // a ball around each point of a lattice: S^4
+  const auto balls = over_torus(5, [](const std::array<double, 5>& x) {
+    double sum = 0;
+    for (const double each : x) sum += std::cos(each);
+    return sum;
+  });
+  for (const Division division : kDivisions) {
+    SCOPED_TRACE(name_of(division));
+    const auto periods = all_periodic<5>(flat.grid);
+    const auto sheets = extract_divided<double>(flat.view(), division, 0.1, {}, periods);
+    const MeshReport of_sheets = expect_closed_manifold(sheets);
+    EXPECT_EQ(of_sheets.components, 2u);
+    EXPECT_EQ(of_sheets.euler, 0);
+    EXPECT_NEAR(measure(sheets).size, 2.0 * std::pow(kTurn, 4), 1e-6);
+    EXPECT_EQ(sheets.periods.size(), 5u);
+    if (division == Division::symmetric) continue;  // 3 125 cells
+    const auto around = all_periodic<5>(balls.grid);
+    const auto ball = extract_divided<double>(balls.view(), division, 3.5, {}, around);
+    const MeshReport of_ball = expect_closed_manifold(ball);
+    EXPECT_EQ(of_ball.components, 1u);
+    EXPECT_EQ(of_ball.euler, 2);
+    EXPECT_GT(measure(ball).content.value(), 0.0);
+    // below the saddles at 3, five handles connect the ball with itself around the torus
+    const MeshReport with_handles =
+        expect_closed_manifold(extract_divided<double>(balls.view(), division, 2.2, {}, around));
+    EXPECT_EQ(with_handles.components, 1u);
+    EXPECT_EQ(with_handles.euler, 2 * (1 - 5));
+  }
+}
+
+TEST(Division5d, AcrossTheSeamTheContourIsThatOfTheLongerImage) {
+  // Noise that is low at all borders but those of axes 1 and 3, which repeat their first layers at their ends.
+  for (const Division division : kDivisions) {
+    const std::size_t samples = division == Division::kuhn ? 5 : 4;
+    OwnedImage<double, 5> image = noise<5>(samples, 41);
+    std::mt19937 random(42);
+    std::size_t i = 0;
+    detail::for_each_sample<5>(image.grid.sizes(), [&](const std::array<std::size_t, 5>& at) {
+      const auto inside = [&](std::size_t a) { return at[a] > 0 && at[a] + 1 < samples; };
+      image.values[i++] = inside(0) && inside(2) && inside(4) ? std::uniform_real_distribution<double>()(random) : 0.0;
+    });
+    AxisPeriods<5> periods{};
+    for (const int a : {1, 3})
+      periods[static_cast<std::size_t>(a)] = all_periodic<5>(image.grid)[static_cast<std::size_t>(a)];
+    OwnedImage<double, 5> longer{detail::longer_grid(image.grid, periods), {}};
+    detail::for_each_sample<5>(longer.grid.sizes(), [&](std::array<std::size_t, 5> at) {
+      for (std::size_t& each : at) each %= samples;
+      longer.values.push_back(image.view()(at));
+    });
+    const auto wrapped = extract_divided<double>(image.view(), division, 0.5, {}, periods);
+    const auto plain = extract_divided<double>(longer.view(), division, 0.5);
+    SCOPED_TRACE(name_of(division));
+    expect_closed_manifold(wrapped);
+    EXPECT_EQ(wrapped.simplices.size(), plain.simplices.size());
+    EXPECT_LT(wrapped.vertices.size(), plain.vertices.size());
+    EXPECT_NEAR(measure(wrapped).size, measure(plain).size, 1e-9 * measure(plain).size);
+    const Unrolled<5, double> unrolled = unroll(wrapped);
+    const MeshReport of_unrolled = expect_oriented_manifold(unrolled.contour), of_plain = check(plain);
+    EXPECT_EQ(of_unrolled.simplices, of_plain.simplices);
+    EXPECT_EQ(of_unrolled.boundary_simplices, of_plain.boundary_simplices);
+    const ContourSize size = count_divided(image.view(), division, 0.5, {}, periods);
+    EXPECT_EQ(size.vertices, wrapped.vertices.size());
+    EXPECT_EQ(size.simplices, wrapped.simplices.size());
+  }
+}
+
+TEST(Division5d, NormalsAreTheImagesGradients) {
+  // Of a linear function they are exact for all kinds, also on a sheared grid.
+  auto image = sampled<5>(4, [](const std::array<double, 5>& x) { return x[0] - 2 * x[1] + 0.5 * x[2] + x[4]; });
+  image.grid.linear[1][3] = 0.5;
+  const std::array<double, 5> expected = [&] {
+    // the gradient in the world: of axis 3, less what the shear adds
+    std::array<double, 5> gradient = {1, -2, 0.5, 1, 1};
+    double square = 0;
+    for (const double x : gradient) square += x * x;
+    for (double& x : gradient) x /= -std::sqrt(square);
+    return gradient;
+  }();
+  for (const Division division : kDivisions)
+    for (const Normals kind :
+         {Normals::differences, Normals::sobel, Normals::prewitt, Normals::forward, Normals::backward}) {
+      ExtractOptions options;
+      options.normals = kind;
+      const auto contour = extract_divided<double>(image.view(), division, 0.2, options);
+      ASSERT_EQ(contour.normals.size(), contour.vertices.size());
+      ASSERT_GT(contour.normals.size(), 100u);
+      for (const auto& normal : contour.normals)
+        for (std::size_t a = 0; a < 5; ++a) ASSERT_NEAR(normal[a], expected[a], 1e-9);
+    }
+}
+
+TEST(Division5d, NormalsAcrossTheSeamAreThoseOfThePeriodicImage) {
+  // The image moved by one sample has the normals of the moved contour.
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  for (const Division division : {Division::kuhn}) {
+    auto image = noise<5>(4, 51);
+    std::mt19937 random(52);
+    for (double& value : image.values) value = std::uniform_real_distribution<double>()(random);
+    auto moved = image;
+    std::size_t i = 0;
+    detail::for_each_sample<5>(image.grid.sizes(), [&](std::array<std::size_t, 5> at) {
+      for (std::size_t& each : at) each = (each + 1) % 4;
+      moved.values[i++] = image.view()(at);
+    });
+    const auto periods = all_periodic<5>(image.grid);
+    const auto sorted_normals = [&](const OwnedImage<double, 5>& of) {
+      auto normals = extract_divided<double>(of.view(), division, 0.5, options, periods).normals;
+      for (auto& normal : normals)
+        for (double& x : normal) x = std::round(x * 0x1p30);
+      std::sort(normals.begin(), normals.end());
+      return normals;
+    };
+    EXPECT_EQ(sorted_normals(image), sorted_normals(moved));
+  }
+}
+
 template <class Real>
 bool same_bytes(const Contour<5, Real>& first, const Contour<5, Real>& second) {
   return first.vertices.size() == second.vertices.size() && first.simplices == second.simplices &&
@@ -276,6 +500,13 @@ TEST(Division5d, AnyNumberOfThreadsGivesTheSameBytes) {
     options.work.threads = 5;
     EXPECT_TRUE(same_bytes(extract_divided(image.view(), Division::kuhn, 0.3, options), one));
   }
+  const auto holes = with_missing<5>(4, 0.01, 9);
+  const auto periods = all_periodic<5>(holes.grid, 2);
+  ExtractOptions options;
+  options.work.threads = 1;
+  const auto one = extract_divided(holes.view(), Division::kuhn, 0.5, options, periods);
+  options.work.threads = 5;
+  EXPECT_TRUE(same_bytes(extract_divided(holes.view(), Division::kuhn, 0.5, options, periods), one));
 }
 
 TEST(Division5d, MirroredGridsHaveTheSameSide) {
@@ -325,8 +556,8 @@ TEST(Division5d, ErrorsNameTheOption) {
   expect_error(ErrorCode::InvalidArgument, "division hybrid of a 5D image; expected kuhn or symmetric",
                [&] { extract_with(Division::hybrid, {}); });
   ExtractOptions options;
-  options.normals = Normals::differences;
-  expect_error(ErrorCode::InvalidArgument, "normals of a divided 5D image; expected none",
+  options.normals = Normals::context;
+  expect_error(ErrorCode::InvalidArgument, "normals context of a divided image; expected gradients of other kinds",
                [&] { extract_with(Division::kuhn, options); });
   options.normals = Normals::none;
   options.triangulation = Triangulation::barycentric;
@@ -334,9 +565,10 @@ TEST(Division5d, ErrorsNameTheOption) {
                [&] { extract_with(Division::kuhn, options); });
   expect_error(ErrorCode::InvalidIsovalue, "isovalue inf",
                [&] { (void)extract_divided(image.view(), Division::kuhn, std::numeric_limits<double>::infinity()); });
-  image.values.back() = std::numeric_limits<double>::quiet_NaN();
-  expect_error(ErrorCode::UnsupportedData, "5D image with missing values", [&] { extract_with(Division::kuhn, {}); });
-  expect_error(ErrorCode::UnsupportedData, "beside layer 1", [&] { extract_with(Division::symmetric, {}); });
+  AxisPeriods<5> periods{};
+  periods[4] = 0.5;
+  expect_error(ErrorCode::InvalidArgument, "the period of axis 4 (u) is 0.5",
+               [&] { (void)extract_divided(image.view(), Division::kuhn, 0.5, {}, periods); });
 }
 
 TEST(Division5d, AnAxisOfOneSampleHasAnEmptyContour) {
