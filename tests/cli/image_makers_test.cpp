@@ -346,8 +346,9 @@ TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
   expect_refused({"contour", path("five.nrrd"), "--iso", "0", "--division", "hybrid", "-o", path("no.vtkhdf")},
                  "division hybrid of a 5D image; expected kuhn or symmetric", 2);
   // periodic axes: wrapped in .vtkhdf, unrolled on request; cut along and across the period
+  ASSERT_EQ(run_tegl({"sample", "ball", "--dim", "5", "--size", "4", "-o", path("four.nrrd"), "-q"}).exit, 0);
   const auto periodic = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"contour",   path("five.nrrd"), "--iso", "-0.5", "--division",
+    std::vector<std::string> arguments = {"contour",   path("four.nrrd"), "--iso", "-0.5", "--division",
                                           "kuhn",      "--periodic",      "x,y",   "-o",   path("p.vtkhdf"),
                                           "--normals", "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -359,7 +360,7 @@ TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
   EXPECT_EQ(read_mesh(path("p.vtkhdf")).periods.size(), 2 * 11u);
   EXPECT_GT(periodic({"--close", "--unroll"})["boundary_simplices"], 0);
   for (const char* const place : {"u=0.2", "x=0.1"}) {
-    const RunResult part = run_tegl({"slice", path("five.nrrd"), "--iso", "-0.5", "--division", "kuhn", "--periodic",
+    const RunResult part = run_tegl({"slice", path("four.nrrd"), "--iso", "-0.5", "--division", "kuhn", "--periodic",
                                      "x,y", "--close", "--at", place, "-o", path("cut.vtkhdf"), "--json"});
     ASSERT_EQ(part.exit, 0) << part.err;
     EXPECT_GT(part.json()["simplices"], 100);
