@@ -137,6 +137,11 @@ void alphas_of_ends(const double* from, const double* to, std::size_t count, dou
   alphas_of(from, to, count, isovalue, epsilon, out);
 }
 
+void alphas_of_float_ends(const float* from, const float* to, std::size_t count, double isovalue, double epsilon,
+                          double* out) {
+  alphas_of(from, to, count, isovalue, epsilon, out);
+}
+
 /// Interpolation parameters of all edges of a 4D tile, critical or not.
 void alphas_4d(const double* corners, double isovalue, double epsilon, double* out) {
   constexpr unsigned kEdges = tables::edge_count(4);
@@ -192,6 +197,12 @@ HWY_EXPORT(alphas_of_ends);
 void alphas_between(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
                     double* out) noexcept {
   HWY_DYNAMIC_DISPATCH(alphas_of_ends)(from, to, count, isovalue, epsilon, out);
+}
+
+HWY_EXPORT(alphas_of_float_ends);
+void alphas_between(const float* from, const float* to, std::size_t count, double isovalue, double epsilon,
+                    double* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(alphas_of_float_ends)(from, to, count, isovalue, epsilon, out);
 }
 
 HWY_EXPORT(alphas_of_row);

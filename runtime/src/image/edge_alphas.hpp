@@ -40,6 +40,8 @@ inline constexpr std::size_t kLeastEdges = 16;
 void row_alphas(const FloatRowEdges& row, double isovalue, double epsilon, double* out) noexcept;
 
 /// edge_alphas from the values at both ends of each edge.
+void alphas_between(const float* from, const float* to, std::size_t count, double isovalue, double epsilon,
+                    double* out) noexcept;
 void alphas_between(const double* from, const double* to, std::size_t count, double isovalue, double epsilon,
                     double* out) noexcept;
 /// Interpolation parameters for all 32 edges of a 4D tile, from the values at its 16 corners. Results for non-critical

@@ -28,6 +28,15 @@ struct EdgeList {
   std::vector<Word> critical;   ///< bits of the first samples of one row's edges
   bool has_bits = false;        ///< whether these are set
 
+  static constexpr std::size_t kAtOnce = 8;  ///< entries per store
+  /// Sets `count` entries of an array from entry `first` on, and up to kAtOnce - 1 after these.
+  template <class Value>
+  static void fill(std::vector<Value>& values, std::size_t first, std::size_t count, Value value) noexcept {
+    Value* const to = values.data() + first;
+    for (std::size_t i = 0; i < count; i += kAtOnce)
+      for (std::size_t j = 0; j < kAtOnce; ++j) to[i + j] = value;
+  }
+
   /// For `edges` positions, pieces of `piece` edges, and `together` edges of several rows. `words`: of a row.
   void allocate(std::size_t edges, std::size_t piece, std::size_t together, std::size_t words, bool has_end) {
     at.resize(edges);

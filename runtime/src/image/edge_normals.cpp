@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/request_memory.hpp"
 #include "image/row_gradients.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -160,15 +161,27 @@ HWY_INLINE void row_gradients(const RowDifferences<N>& row) {
     for (unsigned a = 0; a < N; ++a) {
       const float* const forward = beside[a][1] + x;
       const auto ahead = hn::Mul(hn::Sub(hn::LoadU(d, forward), here), weights[a][1]);
-      const auto back = hn::Mul(hn::Sub(here, hn::LoadU(d, beside[a][0] + x)), weights[a][0]);
+      const float* const backward = beside[a][0] + x;
+      const auto back = hn::Mul(hn::Sub(here, hn::LoadU(d, backward)), weights[a][0]);
       hn::StoreU(hn::Add(ahead, back), d, out + a * pitch + x);
       if (a != 0) hwy::Prefetch(forward + next);
+      if (a == N - 1) hwy::Prefetch(backward + next);
     }
   };
   // The first sample has no neighbour before it. From the second register on, stores are aligned.
   some(1);
   for (std::size_t x = kLanes; x < last; x += kLanes) some(x);
   some(last);
+  for (unsigned end = 0; end < 2; ++end) {
+    const std::size_t x = end == 0 ? 0 : row.samples - 1;
+    for (unsigned a = 0; a < N; ++a) {
+      const StepWeights& steps = a == 0 ? row.ends[end] : row.weights[a];
+      const float* const back = a == 0 && end == 0 ? centre : beside[a][0];
+      const float* const ahead = a == 0 && end == 1 ? centre : beside[a][1];
+      out[a * pitch + x] = (ahead[x] - centre[x]) * static_cast<float>(steps.forward) +
+                           (centre[x] - back[x]) * static_cast<float>(steps.backward);
+    }
+  }
 }
 
 /// Positions on the edges of a row, which are found by the bits of the edges.
@@ -244,6 +257,7 @@ HWY_INLINE void row_normals(const EdgesOfRow<N>& edges) {
   const auto some = [&](std::size_t i, float* to) HWY_ATTR {
     std::array<hn::Vec<decltype(d)>, N> gradient;
     for (unsigned a = 0; a < N; ++a) gradient[a] = hn::LoadU(d, from + a * pitch + i);
+    if constexpr (N == 3) request_ahead(to, kLanes * sizeof(out[0]));
     const Word lanes = write_unit<float>(d, gradient, sign, to);
     if (HWY_LIKELY(lanes == 0)) return;
     left[i / kWordBits] |= lanes << (i % kWordBits);

@@ -23,7 +23,8 @@ struct NormalRow {
   int axis;
   /// By axis: weights of the backward and forward difference at the first end, then at the second.
   std::array<std::array<Calc, 4>, N> weights;
-  /// 4 x kEdgesAtOnce: weights[0] by edge, if samples along the row are not equidistant; otherwise null.
+  /// 4 x kEdgesAtOnce: weights[0] by edge, if they differ: samples along the row are not equidistant, or edges are at
+  /// its ends. Otherwise null.
   const Calc* row_weights;
   const Calc* to_world;  ///< N x N, row-major, transforms gradients; null: only `sign` applies
   Calc sign;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <type_traits>
+#include <utility>
 
 // Type of the samples, type of the arithmetic, function name. Guarded because the file is read once per instruction
 // set.
@@ -209,12 +210,13 @@ struct FourPairs {
     if constexpr (std::is_same_v<T, float> && std::is_same_v<hn::TFromD<D>, float>) {
       // Only the two: the four that FourRows reads are often in two cache lines.
       static_cast<void>(d);
-      const auto pair = [&](unsigned i) HWY_ATTR {
-        return _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from + at[i])));
+      const auto two = [&](unsigned i) HWY_ATTR {
+        const __m128i pair = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(from + at[i]));
+        return _mm_loadh_pi(_mm_castsi128_ps(pair), reinterpret_cast<const __m64*>(from + at[i + 1]));
       };
-      const __m128 first = _mm_unpacklo_ps(pair(0), pair(1)), second = _mm_unpacklo_ps(pair(2), pair(3));
-      here = hn::Vec<D>{_mm_movelh_ps(first, second)};
-      next = hn::Vec<D>{_mm_movehl_ps(second, first)};
+      const __m128 first = two(0), second = two(2);
+      here = hn::Vec<D>{_mm_shuffle_ps(first, second, _MM_SHUFFLE(2, 0, 2, 0))};
+      next = hn::Vec<D>{_mm_shuffle_ps(first, second, _MM_SHUFFLE(3, 1, 3, 1))};
       return;
     }
 #endif
@@ -230,77 +232,100 @@ HWY_INLINE hn::Vec<D> four_values(D d, const T* from, const std::array<std::ptrd
 #if HWY_ARCH_X86
   if constexpr (std::is_same_v<T, float> && std::is_same_v<hn::TFromD<D>, float>) {
     const auto value = [&](unsigned i) HWY_ATTR { return _mm_load_ss(from + at[i]); };
+#if HWY_TARGET <= HWY_SSE4
+    const __m128 two = _mm_insert_ps(value(0), value(1), 0x10);
+    return hn::Vec<D>{_mm_insert_ps(_mm_insert_ps(two, value(2), 0x20), value(3), 0x30)};
+#else
     return hn::Vec<D>{_mm_movelh_ps(_mm_unpacklo_ps(value(0), value(1)), _mm_unpacklo_ps(value(2), value(3)))};
+#endif
   }
 #endif
   return FourRows<D>(d, from, at).here();
 }
 
-/// Reads four edges, whose first samples are at `at`. `single`, `singles`: places of neighbours in rows of their own.
-template <bool kAlongRow, class T, class Calc>
-HWY_INLINE void gather_four(const T* const* from, std::size_t own, const std::uint8_t* single, std::size_t singles,
-                            const std::array<std::ptrdiff_t, 4>& at, Calc* out) {
-  const hn::FixedTag<Calc, 4> d;
-  using Rows = FourRows<hn::FixedTag<Calc, 4>>;
-  const auto store = [&](std::size_t place, auto values)
-                         HWY_ATTR { hn::StoreU(values, d, out + place * kEdgesAtOnce); };
-  if constexpr (kAlongRow) {
-    const Rows row(d, from[0] + 1, at);
-    store(0, row.before());
-    store(1, row.next());
-    store(2, row.here());
-    store(3, row.after_next());
-  } else {
-    const Rows row(d, from[own + 2], at);
-    store(0, row.before());
-    store(1, row.next());
-    store(own + 2, row.here());
-    const Rows other(d, from[own + 1], at);
-    store(2, other.before());
-    store(3, other.next());
-    store(own + 1, other.here());
-  }
-  for (std::size_t i = 0; i < singles; ++i) {
-    const std::size_t place = single[i];
-    if constexpr (kAlongRow) {
-      const FourPairs beside(d, from[place], at);
-      store(place, beside.here);
-      store(place + 2, beside.next);
-    } else {
-      store(place, four_values(d, from[place], at));
-    }
-  }
-}
+/// The places that FourRows does not read: neighbours in rows of their own. kAlongRow: of each value and the next one,
+/// which are read together, the first.
+template <bool kAlongRow, std::size_t kAxes>
+struct SinglePlaces {
+  static constexpr std::size_t kCount = kAlongRow ? 2 * kAxes - 2 : 4 * kAxes - 6;
+  std::array<std::size_t, kCount> at;
 
-template <bool kAlongRow, class T, class Calc>
+  HWY_INLINE explicit SinglePlaces(std::size_t own) {
+    std::size_t count = 0;
+    // along the row, places 4 a + 2 and 4 a + 3 are next to 4 a and 4 a + 1
+    for (std::size_t place = 4; place < 4 * kAxes; ++place)
+      if (kAlongRow ? place % 4 < 2 : place != own + 1 && place != own + 2) at[count++] = place;
+  }
+};
+
+template <bool kAlongRow, std::size_t kAxes, class T, class Calc>
 HWY_INLINE std::uint64_t gather_fours(const EdgesAnywhere<T, Calc>& edges) {
   // local, because stores of vectors may change any memory
   const std::size_t count = edges.count, own = 4 * edges.axis;
   const std::ptrdiff_t* const rows = edges.rows;
   const std::uint32_t* const at = edges.at;
-  const T* const* const from = edges.from;
-  Calc* const out = edges.out;
-  // along the row, places 4 a + 2 and 4 a + 3 are next to 4 a and 4 a + 1
-  std::array<std::uint8_t, 16> single;
-  std::size_t singles = 0;
-  for (std::size_t place = 4; place < edges.places; ++place)
-    if (kAlongRow ? place % 4 < 2 : place != own + 1 && place != own + 2)
-      single[singles++] = static_cast<std::uint8_t>(place);
-  const hn::FixedTag<std::uint32_t, 4> d;
-  const auto most = hn::Set(d, static_cast<std::uint32_t>(edges.row_size - 4));
+  Calc* const all = edges.out;
+  const T* const first_row = edges.from[kAlongRow ? 0 : own + 2] + (kAlongRow ? 1 : 0);
+  const T* const second_row = edges.from[own + 1];
+  const SinglePlaces<kAlongRow, kAxes> singles(own);
+  std::array<const T*, singles.kCount> from;
+  std::array<std::size_t, singles.kCount> to;
+  for (std::size_t s = 0; s < singles.kCount; ++s) {
+    from[s] = edges.from[singles.at[s]];
+    to[s] = singles.at[s] * kEdgesAtOnce;
+  }
+  const hn::FixedTag<Calc, 4> d;
+  using Rows = FourRows<hn::FixedTag<Calc, 4>>;
+  const auto four = [&](const std::array<std::ptrdiff_t, 4>& samples, Calc* out) HWY_ATTR {
+    const auto store = [&](std::size_t place, auto values)
+                           HWY_ATTR { hn::StoreU(values, d, out + place * kEdgesAtOnce); };
+    const Rows row(d, first_row, samples);
+    store(0, row.before());
+    store(1, row.next());
+    if constexpr (kAlongRow) {
+      store(2, row.here());
+      store(3, row.after_next());
+    } else {
+      store(own + 2, row.here());
+      const Rows other(d, second_row, samples);
+      store(2, other.before());
+      store(3, other.next());
+      store(own + 1, other.here());
+    }
+    const auto single = [&](std::size_t s) HWY_ATTR {
+      if constexpr (kAlongRow) {
+        const FourPairs beside(d, from[s], samples);
+        hn::StoreU(beside.here, d, out + to[s]);
+        hn::StoreU(beside.next, d, out + to[s] + 2 * kEdgesAtOnce);
+      } else {
+        hn::StoreU(four_values(d, from[s], samples), d, out + to[s]);
+      }
+    };
+    // Unrolled, as not every optimisation level unrolls a loop.
+    [&]<std::size_t... S>(std::index_sequence<S...>) HWY_ATTR { (single(S), ...); }
+    (std::make_index_sequence<singles.kCount>());
+  };
+  const hn::FixedTag<std::uint32_t, 4> lanes;
+  const auto most = hn::Set(lanes, static_cast<std::uint32_t>(edges.row_size - 4));
   std::uint64_t left = 0;
   for (std::size_t i = 0; i < count; i += 4) {
     const std::size_t first = std::min(i, count - 4);  // some edges are read twice
-    const auto inside = hn::Sub(hn::LoadU(d, at + first), hn::Set(d, 1u));
-    if (HWY_LIKELY(hn::AllTrue(d, hn::Eq(inside, hn::Min(inside, most))))) {
+    const auto inside = hn::Sub(hn::LoadU(lanes, at + first), hn::Set(lanes, 1u));
+    if (HWY_LIKELY(hn::AllTrue(lanes, hn::Eq(inside, hn::Min(inside, most))))) {
       const auto sample = [&](std::size_t j) HWY_ATTR { return rows[j] + static_cast<std::ptrdiff_t>(at[j]); };
-      gather_four<kAlongRow>(from, own, single.data(), singles,
-                             {sample(first), sample(first + 1), sample(first + 2), sample(first + 3)}, out + first);
+      four({sample(first), sample(first + 1), sample(first + 2), sample(first + 3)}, all + first);
     } else {
       left |= std::uint64_t{15} << first;
     }
   }
   return left;
+}
+
+template <bool kAlongRow, class T, class Calc>
+HWY_INLINE std::uint64_t gather_fours(const EdgesAnywhere<T, Calc>& edges) {
+  if (edges.places == 8) return gather_fours<kAlongRow, 2>(edges);
+  if (edges.places == 12) return gather_fours<kAlongRow, 3>(edges);
+  return gather_fours<kAlongRow, 4>(edges);
 }
 
 #endif

@@ -25,13 +25,15 @@ struct RowDifferences {
   const float* here;
   std::array<const float*, N> backward, forward;  ///< by axis from 1 on; `here` if there is no such row
   std::array<StepWeights, N> weights;
+  std::array<StepWeights, 2> ends;  ///< weights along the row of its first and its last sample
   std::size_t samples;  ///< at least kLeastRow
   std::ptrdiff_t next;  ///< to the row that is probably next; 0: unknown
   float* out;           ///< derivatives along axis a from a * pitch on; stores are faster if it is aligned
   std::size_t pitch;    ///< at least samples + kRowMargin
 };
 
-/// Writes the gradients in axis coordinates, except at the first and the last sample of the row.
+/// Writes the gradients in axis coordinates. The first and the last sample of the row are their own neighbours beyond
+/// it.
 template <int N>
 void write_row_gradients(const RowDifferences<N>& row) noexcept;
 

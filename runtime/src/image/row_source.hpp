@@ -7,7 +7,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
+#include "image/edge_alphas.hpp"
 #include "image/sample_source.hpp"
 #include "tegl/image.hpp"
 
@@ -33,6 +35,11 @@ class RowSource : public SampleSource<N> {
     return {reinterpret_cast<const std::byte*>(layer(k)), sizeof(T), strides()[0] * std::ptrdiff_t{sizeof(T)}};
   }
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;
+  /// edge_alphas from the samples at both ends of each edge.
+  void alphas_between(const T* from, const T* to, std::size_t count,
+                      double* out) const noexcept requires std::is_same_v<T, float> {
+    detail::alphas_between(from, to, count, this->isovalue(), epsilon_, out);
+  }
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;
   void cells_alphas(const CellsWithEdges<N, 3>& cubes,
                     typename CellsWithEdges<N, 3>::Alphas& out) const noexcept final {

@@ -15,6 +15,7 @@
 #include "hwy/cache_control.h"
 #include "image/edge_list.hpp"
 #include "image/vertex_moves.hpp"
+#include "image/vertex_run.hpp"
 #include "kernel/contour_output.hpp"
 #include "kernel/extract_layers.hpp"
 #include "kernel/extract_rows.hpp"
@@ -22,29 +23,6 @@
 #include "kernel/row_normals.hpp"
 
 namespace tegl::detail {
-
-/// Output range for vertices, indexed by number. Numbers count modulo 2^32, so a contour may have more vertices than
-/// that, but a part of it may not.
-template <class Vertex>
-struct VertexRun {
-  Vertex* data;
-  Index first;
-  Vertex* normals = nullptr;  ///< null: no normals requested
-  Vertex& operator[](Index id) const noexcept { return data[static_cast<Index>(id - first)]; }
-  Vertex& normal(Index id) const noexcept { return normals[static_cast<Index>(id - first)]; }
-};
-
-/// Source and destination of edges for a chunk of rows: edges in a layer, and edges along the last axis in the slab
-/// below it.
-template <class Vertex>
-struct EdgeTarget {
-  struct Run {
-    std::size_t layer = 0;  ///< layer in which the edges start
-    Vertex* end = nullptr;  ///< limit for stores that are later overwritten
-  };
-  Run in_layer, in_slab;
-  VertexRun<Vertex> vertices;
-};
 
 /// Writes vertices (and normals) on edges. One per thread. Memory is O(samples per row) for edge positions; other
 /// arrays have bounded size.
@@ -74,6 +52,8 @@ class EdgeWriter {
     if (placement.normals() == nullptr) return;
     normals_ = std::make_unique<NormalScratch>();
     for (List& list : lists_) list.normals.resize(room_together(shape.size(0)));
+    if constexpr (kHasRowNormals)
+      if (placement.normals()->reads_ends_in_float()) floats_ = dynamic_cast<const RowSource<float, N>*>(&source);
     if constexpr (kHasRowNormals)
       if (RowNormals<N>::suits(source, *placement.normals(), shape))
         row_normals_ = std::make_unique<RowNormals<N>>(source, *placement.normals(), shape);
@@ -148,7 +128,6 @@ class EdgeWriter {
   static constexpr bool kHasRowNormals = std::is_same_v<Real, float>;
   static constexpr std::size_t kMargin = 16;   ///< entries that vector code reads or writes past the end of lists
   static constexpr std::uint32_t kMany = 48;   ///< rows with so many edges are not combined with others
-  static constexpr std::size_t kAtOnce = 8;    ///< values per store
   /// In rows with fewer than one edge per so many samples, it is faster to read the samples around each edge.
   static constexpr std::size_t kSamplesPerEdge = 3;
   static constexpr std::size_t kPiece = 4096;  ///< maximum edges of one row processed at a time
@@ -169,6 +148,7 @@ class EdgeWriter {
   static constexpr std::size_t most_segments(std::size_t samples) noexcept { return N * (full(samples) + 1); }
 
   using List = EdgeList<N, Vertex>;
+  static constexpr std::size_t kAtOnce = List::kAtOnce;
   /// Range of one row's edges in a list.
   struct Segment {
     std::size_t row;
@@ -176,13 +156,6 @@ class EdgeWriter {
     std::uint32_t first, count;
     Index vertex;
   };
-
-  template <class Value>
-  static void fill(std::vector<Value>& values, std::size_t first, std::size_t count, Value value) noexcept {
-    Value* const to = values.data() + first;
-    for (std::size_t i = 0; i < count; i += kAtOnce)
-      for (std::size_t j = 0; j < kAtOnce; ++j) to[i + j] = value;
-  }
 
   /// Appends the edges of a row to the lists of all axes.
   template <class ListEdges, class WriteBits>
@@ -206,9 +179,10 @@ class EdgeWriter {
       if (count == 0) continue;
       List& list = lists_[axis];
       const std::size_t filled = std::min<std::size_t>(count, kPiece);
-      fill(list.rows, list.size, filled, offset);
-      for (int a = 1; a + 1 < N; ++a) fill(list.start[a], list.size, filled, placement_.sample(a, index[a]));
-      if (axis > 0 && axis + 1 < N) fill(list.end, list.size, filled, placement_.sample(axis, index[axis] + 1));
+      List::fill(list.rows, list.size, filled, offset);
+      const std::size_t entries = alone ? 1 : filled;
+      for (int a = 1; a + 1 < N; ++a) List::fill(list.start[a], list.size, entries, placement_.sample(a, index[a]));
+      if (axis > 0 && axis + 1 < N) List::fill(list.end, list.size, entries, placement_.sample(axis, index[axis] + 1));
       list.has_bits = alone && are_dense(count);
       if (list.has_bits) write_bits_of(axis, list.critical.data());
       if (!alone) fetch_samples(axis, list.at.data() + list.size, filled, offset);
@@ -266,11 +240,8 @@ class EdgeWriter {
       }
     // compute
     for (int axis = 0; axis < N; ++axis)
-      for (std::size_t first = 0; first < lists_[axis].size; first += kPiece) {
-        const EdgesInRows edges = make_points(axis, first, points[axis] + first);
-        if (!normals_ || (in_place && make_normals_of_row(axis, edges, normals[axis]))) continue;
-        make_normals(axis, first, edges, normals[axis] + first);
-      }
+      for (std::size_t first = 0; first < lists_[axis].size; first += kPiece)
+        make_piece(axis, first, in_place, points[axis] + first, normals_ ? normals[axis] + first : nullptr);
     // copy
     if (!in_place)
       for (const Segment& segment : segments_) {
@@ -285,13 +256,31 @@ class EdgeWriter {
     return axis == N - 1 ? target_.in_slab : target_.in_layer;
   }
 
-  /// Computes the vertices of a piece of a list, from edge `first` on. Returns the piece.
-  EdgesInRows make_points(int axis, std::size_t first, Vertex* out) noexcept {
+  /// Computes the vertices and normals of a piece of a list, from edge `first` on. `normals` is null if none are
+  /// requested.
+  void make_piece(int axis, std::size_t first, bool in_place, Vertex* points, Vertex* normals) noexcept {
     List& list = lists_[axis];
-    const std::size_t layer = run(axis).layer;
     const EdgesInRows edges = list.piece(first, std::min(kPiece, list.size - first));
-    source_.edge_alphas(layer, axis, edges, list.alphas.data());
+    if (normals != nullptr && floats_ != nullptr && edges.critical == nullptr) {
+      // Normals need the samples at the ends of edges too: each is read once.
+      make_normals(axis, first, edges, normals,
+                   [&](const auto* one, const auto* other, std::size_t i, std::size_t count) {
+                     if constexpr (std::is_same_v<decltype(one), const float*>)
+                       floats_->alphas_between(one, other, count, list.alphas.data() + i);
+                   });
+      return make_points(axis, edges, in_place, points);
+    }
+    source_.edge_alphas(run(axis).layer, axis, edges, list.alphas.data());
+    make_points(axis, edges, in_place, points);
+    if (normals == nullptr || (in_place && make_normals_of_row(axis, edges, normals))) return;
+    make_normals(axis, first, edges, normals, typename NormalWriter<N, Real>::NoAlphas{});
+  }
+
+  /// Computes the vertices of a piece from their interpolation parameters. `in_one_row`: all edges are of one row.
+  void make_points(int axis, const EdgesInRows& edges, bool in_one_row, Vertex* out) noexcept {
+    List& list = lists_[axis];
     EdgePoints<N, Real> points{};
+    points.in_one_row = in_one_row;
     points.at = edges.at;
     points.alphas = list.alphas.data();
     points.count = edges.count;
@@ -299,9 +288,8 @@ class EdgeWriter {
     for (int a = 1; a + 1 < N; ++a) points.start[a] = list.start[a].data();
     points.end = list.end.data();
     points.out = out;
-    placement_.edges(layer, points);
+    placement_.edges(run(axis).layer, points);
     if (moves_ != nullptr) move_points(axis, edges, list.alphas.data(), out);
-    return edges;
   }
 
   void move_points(int axis, const EdgesInRows& edges, const double* alphas, Vertex* out) const noexcept {
@@ -311,7 +299,7 @@ class EdgeWriter {
     }
   }
 
-  /// Computes the normals of a row after make_points, if its edges are dense. Otherwise returns false.
+  /// Computes the normals of a row, if its edges are dense. Otherwise returns false.
   bool make_normals_of_row([[maybe_unused]] int axis, [[maybe_unused]] const EdgesInRows& edges,
                            [[maybe_unused]] Vertex* out) noexcept {
     if constexpr (kHasRowNormals) {
@@ -323,8 +311,10 @@ class EdgeWriter {
     return false;
   }
 
-  /// Computes the normals of a piece after make_points.
-  void make_normals(int axis, std::size_t first, const EdgesInRows& edges, Vertex* out) noexcept {
+  /// Computes the normals of a piece. `write_alphas`: as for NormalWriter::edges.
+  template <class WriteAlphas>
+  void make_normals(int axis, std::size_t first, const EdgesInRows& edges, Vertex* out,
+                    const WriteAlphas& write_alphas) noexcept {
     const auto segment_of = [&](std::size_t i) -> const Segment& {
       return *std::find_if(segments_.begin(), segments_.end(),
                            [&](const Segment& s) { return s.axis == axis && first + i - s.first < s.count; });
@@ -344,7 +334,7 @@ class EdgeWriter {
       return;
     }
     placement_.normals()->edges(start_in(segments_.front().row, axis), axis, edges, lists_[axis].alphas.data(),
-                                *normals_, out, start_of);
+                                *normals_, out, start_of, write_alphas);
   }
 
   /// First sample of the row in which edges along `axis` start.
@@ -373,6 +363,8 @@ class EdgeWriter {
   const EdgeCrossings<N>& source_;
   const VertexMoves<N>* moves_;  ///< null: vertices stay on their edges
   const Placement<N, Real>& placement_;
+  /// `source`, if it computes interpolation parameters from samples that normals read too; otherwise null.
+  const RowSource<float, N>* floats_ = nullptr;
   VertexUncertainty* uncertainty_;  ///< null: not requested
   const RowShape<N>& shape_;
   std::array<std::ptrdiff_t, N> strides_;

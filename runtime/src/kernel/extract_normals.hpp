@@ -26,7 +26,7 @@ namespace tegl::detail {
 /// Values around edges. Vector code reads whole registers; entries past the last are zero or left over.
 template <class Calc>
 struct EdgeValues {
-  std::array<Calc, kEdgeValues<4> * kEdgesAtOnce> values{};
+  alignas(64) std::array<Calc, kEdgeValues<4> * kEdgesAtOnce> values{};
   std::array<Calc, 4 * kEdgesAtOnce> row_weights{};
 };
 
@@ -76,9 +76,7 @@ class NormalWriter {
 
   /// Whether normals are made of differences in float, with the same weights at all samples of a row but the first and
   /// the last.
-  [[nodiscard]] bool is_by_equal_weights() const noexcept {
-    return kind_ == Normals::differences && around_edges_in_float_ != nullptr && steps_[0].is_uniform();
-  }
+  [[nodiscard]] bool is_by_equal_weights() const noexcept { return reads_ends_in_float() && steps_[0].is_uniform(); }
   [[nodiscard]] const AxisSteps& steps(int axis) const noexcept { return steps_[axis]; }
   /// Whether samples at the ends of a row have no neighbours beyond.
   [[nodiscard]] bool ends_with_row() const noexcept {
@@ -87,20 +85,32 @@ class NormalWriter {
   /// By which gradients are multiplied, so that they point to the side that the contour faces.
   [[nodiscard]] double sign() const noexcept { return sign_; }
 
+  /// Whether normals are made of differences in float, so that `edges` reads the samples at the ends of each edge.
+  [[nodiscard]] bool reads_ends_in_float() const noexcept {
+    return kind_ == Normals::differences && around_edges_in_float_ != nullptr;
+  }
+
+  struct NoAlphas {
+    template <class Calc>
+    void operator()(const Calc* /*first*/, const Calc* /*second*/, std::size_t /*i*/, std::size_t /*count*/) const {}
+  };
   /// Writes the normals on edges along `axis`. They start in the row of `start`, or in several rows that are inside,
   /// one of which is the row of `start` (start[0] is ignored). `start_of(i)`: index of edge i's first sample. Up to 15
-  /// entries past the end of `alphas` are read.
-  template <class StartOf>
+  /// entries past the end of `alphas` are read. With reads_ends_in_float, `alphas` need not be known before:
+  /// write_alphas(first, second, i, count) may set them for `count` edges from edge i on, from the samples at their
+  /// ends.
+  template <class StartOf, class WriteAlphas = NoAlphas>
   void edges(const Index& start, int axis, const EdgesInRows& edges, const double* alphas, NormalScratch& scratch,
-             Vertex* out, const StartOf& start_of) const noexcept {
+             Vertex* out, const StartOf& start_of, const WriteAlphas& write_alphas = {}) const noexcept {
     if (kind_ != Normals::differences) {
       for (std::size_t i = 0; i < edges.count; ++i) out[i] = on_edge(start_of(i), axis, alphas[i]);
       return;
     }
     if constexpr (std::is_same_v<Real, float>)
       if (around_edges_in_float_ != nullptr)
-        return edges_by(around_edges_in_float_, start, axis, edges, alphas, scratch.of<float>(), out, start_of);
-    edges_by(around_edges_, start, axis, edges, alphas, scratch.of<double>(), out, start_of);
+        return edges_by(around_edges_in_float_, start, axis, edges, alphas, scratch.of<float>(), out, start_of,
+                        write_alphas);
+    edges_by(around_edges_, start, axis, edges, alphas, scratch.of<double>(), out, start_of, NoAlphas{});
   }
 
   /// Normal on the edge along `axis` from the sample `index`, at the share `alpha` of it, for any values.
@@ -179,28 +189,31 @@ class NormalWriter {
     (std::make_index_sequence<N>());
   }
 
-  template <class Calc, class StartOf>
+  template <class Calc, class StartOf, class WriteAlphas>
   void edges_by(AroundEdges<N, Calc> around_edges, const Index& start, int axis, const EdgesInRows& edges,
-                const double* alphas, EdgeValues<Calc>& scratch, Vertex* out, const StartOf& start_of) const noexcept {
+                const double* alphas, EdgeValues<Calc>& scratch, Vertex* out, const StartOf& start_of,
+                const WriteAlphas& write_alphas) const noexcept {
     EdgeSurroundings<N> around{start[N - 1], axis, {}};
     NormalRow<N, Real, Calc> row{scratch.values.data(),    alphas, 0, axis, {}, nullptr, nullptr,
                                  static_cast<Calc>(sign_), out};
     describe(start, around, row);
     if constexpr (std::is_same_v<Calc, double>)
       if (mapped_) row.to_world = to_world_.data();
-    if (!steps_[0].is_uniform()) row.row_weights = scratch.row_weights.data();
     const bool all_read = ends_with_row();
     for (std::size_t i = 0; i < edges.count; i += kEdgesAtOnce, row.out += kEdgesAtOnce) {
       // values and weights
       row.count = std::min(kEdgesAtOnce, edges.count - i);
       const Word at_ends =
           around_edges(source_, around, {edges.rows + i, edges.at + i, row.count}, scratch.values.data());
+      const auto end = [&](std::size_t place) -> const Calc* {
+        return scratch.values.data() + (4 * static_cast<std::size_t>(axis) + place) * kEdgesAtOnce;
+      };
+      write_alphas(end(2), end(1), i, row.count);
       row.alphas = alphas + i;
-      if (row.row_weights != nullptr) fill_row_weights(axis, edges.at + i, row.count, scratch.row_weights.data());
+      row.row_weights = write_row_weights(axis, edges.at + i, row.count, all_read ? at_ends : 0, scratch.row_weights);
       // normals
       Word left = write_normals(row);
-      // These edges are at the ends of the row, where weights differ, or there are neighbours that were not read.
-      if (row.row_weights == nullptr || steps_[0].has_backward(0)) left |= at_ends;
+      if (!all_read) left |= at_ends;  // there are neighbours beyond the row
       for (; left != 0; left &= left - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(left));
         const auto value = [&](unsigned place) {
@@ -229,16 +242,25 @@ class NormalWriter {
     }
   }
 
-  template <class Calc>
-  void fill_row_weights(int axis, const std::uint32_t* at, std::size_t count, Calc* out) const noexcept {
-    for (std::size_t i = 0; i < count; ++i) {
+  /// Writes the weights along the row by edge, if they differ. Returns them, or null. `at_ends`: edges with an end that
+  /// is the first or the last sample of its row.
+  template <class Calc, std::size_t kCount>
+  const Calc* write_row_weights(int axis, const std::uint32_t* at, std::size_t count, Word at_ends,
+                                std::array<Calc, kCount>& out) const noexcept {
+    const auto set = [&](std::size_t i) {
       const StepWeights first = steps_[0].at(at[i]);
       const StepWeights second = axis == 0 ? steps_[0].at(at[i] + std::size_t{1}) : first;
-      out[i] = static_cast<Calc>(first.backward);
-      out[kEdgesAtOnce + i] = static_cast<Calc>(first.forward);
-      out[2 * kEdgesAtOnce + i] = static_cast<Calc>(second.backward);
-      out[3 * kEdgesAtOnce + i] = static_cast<Calc>(second.forward);
+      const std::array<double, 4> weights = {first.backward, first.forward, second.backward, second.forward};
+      for (std::size_t j = 0; j < 4; ++j) out[j * kEdgesAtOnce + i] = static_cast<Calc>(weights[j]);
+    };
+    if (!steps_[0].is_uniform()) {
+      for (std::size_t i = 0; i < count; ++i) set(i);
+      return out.data();
     }
+    if (at_ends == 0) return nullptr;
+    out.fill(static_cast<Calc>(steps_[0].inside().forward));
+    for (; at_ends != 0; at_ends &= at_ends - 1) set(static_cast<std::size_t>(std::countr_zero(at_ends)));
+    return out.data();
   }
 
   [[nodiscard]] std::array<StepWeights, N> steps_at(const Index& index) const noexcept {

@@ -7,6 +7,9 @@
 
 #include <bit>
 #include <cmath>
+#include <type_traits>
+
+#include "base/request_memory.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernel/extract_points.cpp"
@@ -77,18 +80,19 @@ HWY_INLINE hn::Vec<D> along_row(D d, const EdgePoints<N, Real>& edges, const std
 
 /// Writes as many vertices as D has lanes, starting at edge `i`. The edges are along `Axis`, which is a constant so
 /// that coordinates stay in registers.
-template <int Axis, class D, int N, class Real>
+template <int Axis, bool kInOneRow, class D, int N, class Real>
 HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i) {
   const hn::Rebind<Real, D> real;
   // axis coordinates
   const std::uint32_t* const at = edges.at + i;
   std::array<hn::Vec<D>, N> point;
   point[0] = along_row(d, edges, at, 0);
-  for (int a = 1; a + 1 < N; ++a) point[a] = hn::LoadU(d, edges.start[a] + i);
+  const auto by_edge = [&](const double* of) HWY_ATTR { return kInOneRow ? hn::Set(d, *of) : hn::LoadU(d, of + i); };
+  for (int a = 1; a + 1 < N; ++a) point[a] = by_edge(edges.start[a]);
   point[N - 1] = hn::Set(d, edges.layer);
   const auto end = Axis == 0       ? along_row(d, edges, at, 1)
                    : Axis == N - 1 ? hn::Set(d, edges.next_layer)
-                                   : hn::LoadU(d, edges.end + i);
+                                   : by_edge(edges.end);
   point[Axis] = between(d, point[Axis], end, hn::LoadU(d, edges.alphas + i));
   // world coordinates
   std::array<hn::Vec<decltype(real)>, N> vertex;
@@ -103,27 +107,35 @@ HWY_INLINE void write_some(D d, const EdgePoints<N, Real>& edges, std::size_t i)
   }
   if (!std::isnan(edges.inside[0]))
     vertex[N - 1] = clamped(real, vertex[N - 1], hn::Set(real, edges.inside[0]), hn::Set(real, edges.inside[1]));
+  if constexpr (kInOneRow && N == 3) request_ahead(edges.out + i, hn::MaxLanes(d) * sizeof(edges.out[0]));
   store_points(real, vertex, edges.out[i].data());
 }
 
-template <int Axis, int N, class Real>
-HWY_INLINE void points_along(const EdgePoints<N, Real>& edges) {
+template <int Axis, bool kInOneRow, int N, class Real>
+HWY_INLINE void points_along(const EdgePoints<N, Real>& all) {
   constexpr std::size_t kLanes = hn::MaxLanes(AllLanes());
+  // Of a row, which has many edges, local, because stores of vectors may change any memory.
+  const std::conditional_t<kInOneRow, EdgePoints<N, Real>, const EdgePoints<N, Real>&> edges = all;
+  const auto some = [&](auto d, std::size_t i) HWY_ATTR { write_some<Axis, kInOneRow>(d, edges, i); };
   std::size_t i = 0;
-  for (; i + kLanes <= edges.count; i += kLanes) write_some<Axis>(AllLanes(), edges, i);
+  for (; i + kLanes <= edges.count; i += kLanes) some(AllLanes(), i);
   if (i == edges.count) return;
-  if (edges.count >= kLanes) return write_some<Axis>(AllLanes(), edges, edges.count - kLanes);  // some twice
-  for (; i < edges.count; ++i) write_some<Axis>(OneLane(), edges, i);
+  if (edges.count >= kLanes) return some(AllLanes(), edges.count - kLanes);  // some twice
+  for (; i < edges.count; ++i) some(OneLane(), i);
 }
 
+template <bool kInOneRow, int N, class Real>
+HWY_INLINE void points(const EdgePoints<N, Real>& edges) {
+  if (edges.axis == 0) return points_along<0, kInOneRow>(edges);
+  if (edges.axis == 1) return points_along<1, kInOneRow>(edges);
+  if constexpr (N > 2)
+    if (edges.axis == 2) return points_along<2, kInOneRow>(edges);
+  if constexpr (N > 3)
+    if (edges.axis == 3) return points_along<3, kInOneRow>(edges);
+}
 template <int N, class Real>
 HWY_INLINE void points(const EdgePoints<N, Real>& edges) {
-  if (edges.axis == 0) return points_along<0>(edges);
-  if (edges.axis == 1) return points_along<1>(edges);
-  if constexpr (N > 2)
-    if (edges.axis == 2) return points_along<2>(edges);
-  if constexpr (N > 3)
-    if (edges.axis == 3) return points_along<3>(edges);
+  return edges.in_one_row ? points<true>(edges) : points<false>(edges);
 }
 
 // Highway's dispatch tables cannot hold templates.

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "base/request_memory.hpp"
 #define HWY_WANT_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernel/extract_rows.cpp"
@@ -489,6 +490,7 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
     } else {
       auto* to = out;
       out += count;
+      if constexpr (N == 3) request_ahead(to);
       for (; to < out; to += kAtOnce, local += kAtOnce * N) {
         const __m512i numbers = looked_up<N, Flip>(_mm_loadu_si128(reinterpret_cast<const __m128i*>(local)), ids);
         if (i < roomy) {

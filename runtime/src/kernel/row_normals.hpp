@@ -55,6 +55,7 @@ class RowNormals {
       row.gradients.resize(N * pitch_ + kAlignment);
       RowDifferences<N>& around = row.around;
       around.weights[0] = writer.steps(0).inside();
+      around.ends = {writer.steps(0).at(0), writer.steps(0).at(shape.size(0) - 1)};
       around.samples = shape.size(0);
       around.next = N > 2 ? source.strides()[1] : 0;
       around.out = aligned(row.gradients);
@@ -82,11 +83,7 @@ class RowNormals {
                           aligned(working_),
                           out,
                           left_.data()});
-    // At the row's ends, weights differ.
-    const std::size_t last = shape_.size(0) - (axis == 0 ? 2 : 1);
-    if (edges.at[0] == 0) left_[0] |= 1;
-    if (edges.at[edges.count - 1] == last)
-      left_[(edges.count - 1) / kWordBits] |= Word{1} << ((edges.count - 1) % kWordBits);
+    if (!writer_.ends_with_row()) leave_ends(axis, edges);
     for (std::size_t w = 0; w * kWordBits < edges.count; ++w)
       for (Word rest = left_[w]; rest != 0; rest &= rest - 1) {
         const std::size_t i = w * kWordBits + static_cast<std::size_t>(std::countr_zero(rest));
@@ -107,6 +104,14 @@ class RowNormals {
   static float* aligned(std::vector<float>& entries) noexcept {
     const auto at = reinterpret_cast<std::uintptr_t>(entries.data()) / sizeof(float);
     return entries.data() + (kAlignment - at % kAlignment) % kAlignment;
+  }
+
+  /// Marks edges at the ends of the row, beyond which there are neighbours.
+  void leave_ends(int axis, const EdgesInRows& edges) noexcept {
+    const std::size_t last = shape_.size(0) - (axis == 0 ? 2 : 1);
+    if (edges.at[0] == 0) left_[0] |= 1;
+    if (edges.at[edges.count - 1] == last)
+      left_[(edges.count - 1) / kWordBits] |= Word{1} << ((edges.count - 1) % kWordBits);
   }
 
   /// Gradients of a row, which edges along several axes and of the next row need too.
