@@ -290,7 +290,9 @@ const CubeRegions& CubeRegions::of_caps(Triangulation triangulation) noexcept {
   return triangulation == Triangulation::barycentric ? kRegionsOfCapsBarycentric : kRegionsOfCapsCompact;
 }
 
-const CubeRegions& CubeRegions::alternating(unsigned side) noexcept { return side == 0 ? kRegionsOfEven : kRegionsOfOdd; }
+const CubeRegions& CubeRegions::alternating(unsigned side) noexcept {
+  return side == 0 ? kRegionsOfEven : kRegionsOfOdd;
+}
 )";
   define_undivided(text, arrays);
   return text;
