@@ -166,56 +166,6 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
     return axis % ndim
 
 
-def periodic_or_none(periodic: object) -> object:
-    """The argument `periodic`; None if it is the program's word for that."""
-    return None if isinstance(periodic, str) and periodic == "none" else periodic
-
-
-def periodic_axes(periodic: object, prepared: Prepared,
-                  curved: Sequence[tuple[int, int, np.ndarray, str, str]] = ()) -> tuple[list[int], list[float]]:
-    """The library's axes and their periods (NaN: by the samples) of the argument `periodic`; `curved`: of `curved_axes`."""
-    if isinstance(periodic, str) and periodic == "auto":
-        if prepared.ndim > 4:
-            return [], []  # the library has periodic axes in 2D to 4D
-        found = _tegl.longitude_axes(prepared.image, curved)
-        return found, [float("nan")] * len(found)
-    if isinstance(periodic, str) and periodic == "all":
-        periodic = list(range(prepared.ndim))
-    if isinstance(periodic, (str, int, np.integer)) and not isinstance(periodic, bool):
-        periodic = [periodic]
-    if isinstance(periodic, Mapping):
-        given = [(axis, as_number(f"periodic[{axis!r}]", period)) for axis, period in periodic.items()]
-        for axis, period in given:
-            if not np.isfinite(period) or period <= 0:
-                raise ValueError(f"periodic[{axis!r}] is {period}; expected a positive number")
-    elif isinstance(periodic, (list, tuple)):
-        given = [(axis, float("nan")) for axis in periodic]
-    else:
-        raise TypeError(f"periodic is {periodic!r}; expected an axis, a list of axes, 'all', 'auto', 'none', or a "
-                        "dict of axes and periods")
-    axes = [_periodic_axis(axis, prepared, curved) for axis, _ in given]
-    if not axes or len(set(axes)) != len(axes):
-        raise ValueError(f"periodic is {periodic!r}; expected at least one axis, each once")
-    return axes, [period for _, period in given]
-
-
-def _periodic_axis(axis: int | str, prepared: Prepared,
-                   curved: Sequence[tuple[int, int, np.ndarray, str, str]]) -> int:
-    """The library's axis of a name or number. "lon" and "longitude" also are the axis along which longitudes, by their unit,
-    run around the globe; so is the name of longitudes in an array of several dimensions."""
-    if not isinstance(axis, str) or prepared.ndim > 4:
-        return prepared.library_axis(axis)
-    if axis not in prepared.names:
-        found = _tegl.longitude_axes(prepared.image, curved) if axis in ("lon", "longitude") else []
-        return found[0] if len(found) == 1 else prepared.library_axis(axis)
-    number = prepared.library_axis(axis)
-    for one in curved:
-        found = [a for a in _tegl.longitude_axes(prepared.image, [one]) if one[1] >> a & 1]
-        if len(found) == 1 and number in (one[0], found[0]):  # the other coordinate has the other axis
-            return found[0] if number == one[0] else one[0]
-    return number
-
-
 def curved_axes(curved: object, prepared: Prepared) -> list[tuple[int, int, np.ndarray, str, str]]:
     """The argument `curved` for the library: axis, set of axes that the coordinate differs along, values, name, unit."""
     if not isinstance(curved, Mapping) or not curved:

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _facets, _kinds, _labels, _results, _outside, _tegl
+from . import _arguments, _facets, _kinds, _labels, _results, _outside, _periods, _tegl
 from ._arguments import Labelled, Place, Places, Progress
 from ._contour import Contour
 from ._facets import Facets
@@ -151,7 +151,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     of_cells = samples == "cells" or (samples == "file" and array.samples_are_cells)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
-    periodic = _arguments.periodic_or_none(periodic)
+    periodic = _periods.given_or_none(periodic)
     of_samples = [] if curved is None else _arguments.curved_axes(curved, prepared)
     if curved is not None:
         _refuse_other_coordinates([prepared.library_axis(axis) for axis in curved], prepared, spacing, origin, coords, affine)
@@ -164,7 +164,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         if given not in (["positions", "curved"], ["lattice", "periodic"], ["division", "periodic"],
                          ["periodic", "curved"]) and len(given) > 1:
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
-        axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared, of_samples)
+        axes, periods = ([], []) if periodic is None else _periods.axes_of(periodic, prepared, of_samples)
         if division is not None:
             core = _tegl.extract_divided(prepared.image, _arguments.as_text("division", division), axes, periods, level,
                                          is_double, options, progress)
@@ -225,9 +225,9 @@ def contour_facets(array, level: float, *, spacing=None, origin=None, coords=Non
     is_double = _arguments.is_double(dtype, prepared)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
-    periodic = _arguments.periodic_or_none(periodic)
+    periodic = _periods.given_or_none(periodic)
     with prepared.terms():
-        axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
+        axes, periods = ([], []) if periodic is None else _periods.axes_of(periodic, prepared)
         core = _tegl.extract_facets(prepared.image, on, axes, periods, level, is_double, options, progress)
     if not allow_empty and not len(core.vertices):
         _outside.require_level(prepared, level)
@@ -260,13 +260,13 @@ def count(array, level: float, *, spacing=None, origin=None, coords=None, affine
     level = _arguments.as_number("level", level)
     options = prepared.library_options(options)
     lattice = _lattice_of(array, lattice)
-    periodic = _arguments.periodic_or_none(periodic)
+    periodic = _periods.given_or_none(periodic)
     with prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic))
                  if value is not None]
         if len(given) > 1 and given not in (["lattice", "periodic"], ["division", "periodic"]):
             raise ValueError(f"{given[0]} with {given[1]}; expected one of the two")
-        axes, periods = ([], []) if periodic is None else _arguments.periodic_axes(periodic, prepared)
+        axes, periods = ([], []) if periodic is None else _periods.axes_of(periodic, prepared)
         points = _arguments.as_text("lattice", "" if lattice is None else lattice)
         simplices = _arguments.as_text("division", "" if division is None else division)
         return ContourSize(*_tegl.count(prepared.image, axes, periods, points, simplices, level, options, progress))

@@ -595,5 +595,27 @@ TEST_F(Contour, NamesTheReasonOfZeroSizes) {
   EXPECT_THAT(text_of({"--iso", "2"}), HasSubstr("of zero size (samples equal the isovalue; --epsilon avoids them)"));
 }
 
+TEST_F(Contour, MeshesAreClosedAndHaveNormalsFromTheGradient) {
+  std::string text = R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="1">
+<PointData><DataArray type="Float64" Name="f" format="ascii">0 1 0 1 0 1 0 1</DataArray></PointData>
+<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">)";
+  for (const char* const corner : {"0 0 0 ", "1 0 0 ", "0 1 0 ", "1 1 0 ", "0 0 1 ", "1 0 1 ", "0 1 1 ", "1 1 1 "})
+    text += corner;
+  text += R"(</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 4 5 6 7
+</DataArray><DataArray type="Int64" Name="offsets" format="ascii">8</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">11</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
+  const std::string file = write("cell.vtu", text), saved = path("half.vtkhdf");
+  (void)contour(file, "0.25", "half.vtkhdf", {"--close", "--ambiguity", "saddle", "--normals", "gradient"});
+  const Mesh half = read_mesh(saved);
+  ASSERT_EQ(half.normals.size(), half.coordinates.size());
+  for (std::size_t v = 0; v < half.normals.size(); v += 3) EXPECT_NEAR(half.normals[v], -1.0, 1e-12);
+  const RunResult measured = run_tegl({"measure", saved, "--json"});
+  ASSERT_EQ(measured.exit, 0) << measured.err;
+  EXPECT_NEAR(measured.json()["content"].get<double>(), 0.75, 1e-12);
+  const RunResult run = run_tegl({"contour", file, "--iso", "0.25", "--normals", "sobel", "-o", saved});
+  EXPECT_NE(run.exit, 0);
+  EXPECT_THAT(run.err, HasSubstr("--normals sobel with"));
+}
+
 }  // namespace
 }  // namespace tegl::test

@@ -224,5 +224,29 @@ TEST_F(FacetsCommand, SliceSaysThatItKnowsNoPolygons) {
   EXPECT_THAT(run.err, HasSubstr("expected compact or barycentric"));
 }
 
+TEST_F(FacetsCommand, FacetsOfPeriodicLatticesAreClosedAcrossTheSeam) {
+  const std::string gyroid = path("gyroid.nrrd");
+  const std::string field =
+      "sin(6.283185307179586*x)*cos(6.283185307179586*y)"
+      "+sin(6.283185307179586*y)*cos(6.283185307179586*z)"
+      "+sin(6.283185307179586*z)*cos(6.283185307179586*x)";
+  for (const auto& [lattice, sizes] : {std::pair("fcc", "12,12,16"), std::pair("bcc", "10,10,20")}) {
+    ASSERT_EQ(run_tegl({"sample", field, "--lattice", lattice, "--size", sizes, "--range", "0:1", "-o", gyroid}).exit,
+              0);
+    for (const char* const name : {"facets.vtu", "facets.vtkhdf"}) {
+      const nlohmann::json facets =
+          contour({gyroid, "--iso", "0.01", "--periodic", "all", "--facets", "-o", path(name)});
+      const nlohmann::json simplices =
+          contour({gyroid, "--iso", "0.01", "--periodic", "all", "-o", path("simplices.vtkhdf")});
+      for (const char* const key : {"euler", "components", "tiles", "active_tiles"})
+        EXPECT_EQ(facets[key], simplices[key]) << lattice << " " << key;
+      EXPECT_EQ(facets["boundary_facets"], 0);
+      EXPECT_EQ(facets["facets"]["points"], simplices["vertices"]);
+      std::ifstream file(path(name), std::ios::binary);
+      EXPECT_THAT(std::string(std::istreambuf_iterator<char>(file), {}), HasSubstr("periods"));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tegl::test

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// --periodic of tegl contour and of commands that contour an image, curved grids, lattices, and options of contours of
-// meshes, run as in a shell.
+// --periodic of tegl contour and of commands that contour an image, curved grids, lattices and divisions, run as in a
+// shell.
 #include <gmock/gmock.h>
-#include <netcdf.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -24,39 +22,6 @@ namespace tegl::test {
 namespace {
 
 using testing::HasSubstr;
-
-/// A netCDF file of a global grid with two-dimensional longitudes and latitudes. `is_turned`: its first dimension runs
-/// around the globe.
-void write_curved_globe(const std::string& path, const char* longitudes = "lon", bool is_turned = false) {
-  constexpr std::size_t kLon = 36, kLat = 17;
-  std::vector<double> lon, lat, values;
-  for (std::size_t s = 0; s < kLon * kLat; ++s) {
-    const auto along = static_cast<double>(is_turned ? s / kLat : s % kLon);
-    const auto up = static_cast<double>(is_turned ? s % kLat : s / kLon);
-    lon.push_back(-175.0 + 10.0 * along + 0.1 * up);
-    lat.push_back(-80.0 + 10.0 * up + std::sin(along / 36.0 * 2.0 * std::numbers::pi));
-    const double away = lon.back() - 180.0 - 360.0 * std::round((lon.back() - 180.0) / 360.0);
-    values.push_back(40.0 - std::hypot(away, lat.back()));
-  }
-  int file = 0, variable = 0;
-  std::array<int, 2> dimensions{};
-  const auto check = [](int status) { ASSERT_EQ(status, NC_NOERR) << nc_strerror(status); };
-  check(nc_create(path.c_str(), NC_CLOBBER, &file));
-  check(nc_def_dim(file, "j", kLat, &dimensions[is_turned ? 1 : 0]));
-  check(nc_def_dim(file, "i", kLon, &dimensions[is_turned ? 0 : 1]));
-  const auto define = [&](const char* name, const char* attribute, const std::string& text) {
-    check(nc_def_var(file, name, NC_DOUBLE, 2, dimensions.data(), &variable));
-    check(nc_put_att_text(file, variable, attribute, text.size(), text.c_str()));
-    return variable;
-  };
-  const int of_lon = define(longitudes, "units", "degrees_east"), of_lat = define("lat", "units", "degrees_north");
-  const int of_values = define("spot", "coordinates", std::string(longitudes) + " lat");
-  check(nc_enddef(file));
-  check(nc_put_var_double(file, of_lon, lon.data()));
-  check(nc_put_var_double(file, of_lat, lat.data()));
-  check(nc_put_var_double(file, of_values, values.data()));
-  check(nc_close(file));
-}
 
 class PeriodicCommand : public ProgramTest {
  protected:
@@ -77,10 +42,7 @@ class PeriodicCommand : public ProgramTest {
     return run.json();
   }
   void expect_refused(std::vector<std::string> arguments, const std::string& message) const {
-    arguments.insert(arguments.begin(), {"contour", file_, "--iso", "0"});
-    const RunResult run = run_tegl(arguments);
-    EXPECT_NE(run.exit, 0);
-    EXPECT_THAT(run.err, HasSubstr(message));
+    expect_refused_of(file_, std::move(arguments), message);
   }
   void expect_refused_of(const std::string& file, std::vector<std::string> arguments,
                          const std::string& message) const {
@@ -384,29 +346,6 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
                  "normals on a lattice are sobel; expected gradient");
   (void)run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--normals", "-o", output});
   EXPECT_FALSE(read_mesh(output).normals.empty());
-}
-
-TEST_F(PeriodicCommand, FacetsOfPeriodicLatticesAreClosedAcrossTheSeam) {
-  const std::string gyroid = path("gyroid.nrrd");
-  const std::string field =
-      "sin(6.283185307179586*x)*cos(6.283185307179586*y)"
-      "+sin(6.283185307179586*y)*cos(6.283185307179586*z)"
-      "+sin(6.283185307179586*z)*cos(6.283185307179586*x)";
-  for (const auto& [lattice, sizes] : {std::pair("fcc", "12,12,16"), std::pair("bcc", "10,10,20")}) {
-    (void)run_json({"sample", field, "--lattice", lattice, "--size", sizes, "--range", "0:1", "-o", gyroid});
-    for (const char* const name : {"facets.vtu", "facets.vtkhdf"}) {
-      const nlohmann::json facets =
-          run_json({"contour", gyroid, "--iso", "0.01", "--periodic", "all", "--facets", "-o", path(name)});
-      const nlohmann::json simplices =
-          run_json({"contour", gyroid, "--iso", "0.01", "--periodic", "all", "-o", path("simplices.vtkhdf")});
-      for (const char* const key : {"euler", "components", "tiles", "active_tiles"})
-        EXPECT_EQ(facets[key], simplices[key]) << lattice << " " << key;
-      EXPECT_EQ(facets["boundary_facets"], 0);
-      EXPECT_EQ(facets["facets"]["points"], simplices["vertices"]);
-      std::ifstream file(path(name), std::ios::binary);
-      EXPECT_THAT(std::string(std::istreambuf_iterator<char>(file), {}), HasSubstr("periods"));
-    }
-  }
 }
 
 TEST_F(PeriodicCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
@@ -751,28 +690,6 @@ TEST_F(PeriodicCommand, DividedCellsContinueAcrossTheSeam) {
     EXPECT_EQ(contour.normals.size(), contour.vertices.size());
     EXPECT_GT(report({"--division", division, "--unroll"})["vertices"], wrapped["vertices"]) << division;
   }
-}
-
-TEST_F(PeriodicCommand, MeshesAreClosedAndHaveNormalsFromTheGradient) {
-  std::string text = R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="8" NumberOfCells="1">
-<PointData><DataArray type="Float64" Name="f" format="ascii">0 1 0 1 0 1 0 1</DataArray></PointData>
-<Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">)";
-  for (const char* const corner : {"0 0 0 ", "1 0 0 ", "0 1 0 ", "1 1 0 ", "0 0 1 ", "1 0 1 ", "0 1 1 ", "1 1 1 "})
-    text += corner;
-  text += R"(</DataArray></Points><Cells><DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3 4 5 6 7
-</DataArray><DataArray type="Int64" Name="offsets" format="ascii">8</DataArray>
-<DataArray type="UInt8" Name="types" format="ascii">11</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>)";
-  const std::string file = write("cell.vtu", text), saved = path("half.vtkhdf");
-  (void)run_json(
-      {"contour", file, "--iso", "0.25", "--close", "--ambiguity", "saddle", "--normals", "gradient", "-o", saved});
-  const Mesh half = read_mesh(saved);
-  ASSERT_EQ(half.normals.size(), half.coordinates.size());
-  for (std::size_t v = 0; v < half.normals.size(); v += 3) EXPECT_NEAR(half.normals[v], -1.0, 1e-12);
-  const nlohmann::json measure = run_json({"measure", saved});
-  EXPECT_NEAR(measure["content"].get<double>(), 0.75, 1e-12);
-  const RunResult run = run_tegl({"contour", file, "--iso", "0.25", "--normals", "sobel", "-o", saved});
-  EXPECT_NE(run.exit, 0);
-  EXPECT_THAT(run.err, HasSubstr("--normals sobel with"));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <sstream>
 #include <stdexcept>
@@ -170,6 +171,36 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
       for (float& value : stored) value = static_cast<float>(std::lround(value / scale));
     require(nc_put_var_float(file, ids[i], stored.data()));
   }
+  require(nc_close(file));
+}
+
+void write_curved_globe(const std::string& path, const char* longitudes, bool is_turned) {
+  constexpr std::size_t kLon = 36, kLat = 17;
+  std::vector<double> lon, lat, values;
+  for (std::size_t s = 0; s < kLon * kLat; ++s) {
+    const auto along = static_cast<double>(is_turned ? s / kLat : s % kLon);
+    const auto up = static_cast<double>(is_turned ? s % kLat : s / kLon);
+    lon.push_back(-175.0 + 10.0 * along + 0.1 * up);
+    lat.push_back(-80.0 + 10.0 * up + std::sin(along / 36.0 * 2.0 * std::numbers::pi));
+    const double away = lon.back() - 180.0 - 360.0 * std::round((lon.back() - 180.0) / 360.0);
+    values.push_back(40.0 - std::hypot(away, lat.back()));
+  }
+  int file = 0, variable = 0;
+  std::array<int, 2> dimensions{};
+  require(nc_create(path.c_str(), NC_CLOBBER, &file));
+  require(nc_def_dim(file, "j", kLat, &dimensions[is_turned ? 1 : 0]));
+  require(nc_def_dim(file, "i", kLon, &dimensions[is_turned ? 0 : 1]));
+  const auto define = [&](const char* name, const char* attribute, const std::string& text) {
+    require(nc_def_var(file, name, NC_DOUBLE, 2, dimensions.data(), &variable));
+    require(nc_put_att_text(file, variable, attribute, text.size(), text.c_str()));
+    return variable;
+  };
+  const int of_lon = define(longitudes, "units", "degrees_east"), of_lat = define("lat", "units", "degrees_north");
+  const int of_values = define("spot", "coordinates", std::string(longitudes) + " lat");
+  require(nc_enddef(file));
+  require(nc_put_var_double(file, of_lon, lon.data()));
+  require(nc_put_var_double(file, of_lat, lat.data()));
+  require(nc_put_var_double(file, of_values, values.data()));
   require(nc_close(file));
 }
 

@@ -61,4 +61,8 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
                   const std::vector<std::vector<double>>& coordinates, const std::vector<NetcdfVariable>& variables,
                   const std::vector<NetcdfAttribute>& of_axes = {});
 
+/// A netCDF file of a global grid with two-dimensional longitudes and latitudes. `is_turned`: its first dimension runs
+/// around the globe.
+void write_curved_globe(const std::string& path, const char* longitudes = "lon", bool is_turned = false);
+
 }  // namespace tegl::test
