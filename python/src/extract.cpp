@@ -241,7 +241,7 @@ AnyContour periodic_contour_of(const AnyImage& image, const std::vector<int>& ax
     if constexpr (N <= 4) {
       return {extract_periodic<Real>(view, periods_of(view.grid(), axes, given), level, options), level};
     } else {
-      throw_dimension("periodic axes", N, "2 to 4 dimensions");
+      throw_dimension("periodic axes", N, "2 to 4 dimensions, or division 'kuhn' or 'symmetric'");
     }
   });
 }
@@ -299,10 +299,16 @@ std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage
 std::vector<int> longitude_axes_any(const AnyImage& image, const CurvedAxes& given) {
   const std::vector<CurvedAxis> curved = curved_axes(given);
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> std::vector<int> {
-    if constexpr (N <= 4)
+    if constexpr (N <= 4) {
       return longitude_axes<N>(view.grid(), curved);
-    else
-      throw_dimension("periodic axes", N, "2 to 4 dimensions");
+    } else {
+      if (!curved.empty()) throw_dimension("curved axes", N, "2 to 4 dimensions");
+      const AxisPeriods<N> periods = longitude_periods(view.grid());
+      std::vector<int> axes;
+      for (int a = 0; a < N; ++a)
+        if (periods[a] != 0.0) axes.push_back(a);
+      return axes;
+    }
   });
 }
 
@@ -418,7 +424,8 @@ std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, const s
       }
       return count_periodic(view, periods_of(view.grid(), axes, periods), level, options);
     }
-    throw_dimension("periodic axes and lattices", N, "2 to 4 dimensions");
+    throw_dimension(lattice.empty() ? "periodic axes" : "lattices", N,
+                    lattice.empty() ? "2 to 4 dimensions, or division 'kuhn' or 'symmetric'" : "2 to 4 dimensions");
   };
   const ContourSize size = call.run([&] { return visit_image(image, of_view); });
   return {size.vertices, size.simplices};

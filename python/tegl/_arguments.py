@@ -389,10 +389,19 @@ def own_affine(data) -> np.ndarray | None:
 
 
 def mask_of(array) -> np.ndarray | None:
-    """Where a masked array, or a list of them, is masked; None if there is no mask."""
-    if isinstance(array, (list, tuple)) and any(isinstance(part, np.ma.MaskedArray) for part in array):
-        array = np.ma.array(array)
-    return np.ma.getmaskarray(array) if np.ma.getmask(array) is not np.ma.nomask else None
+    """Where a masked array, or a list of them or of such lists, is masked; None if there is no mask."""
+    if not _has_mask(array):
+        return None
+    if isinstance(array, np.ma.MaskedArray):
+        return np.ma.getmaskarray(array)
+    _array(array)  # an error for rows of different lengths
+    return np.array([np.zeros(np.shape(part), bool) if (mask := mask_of(part)) is None else mask for part in array])
+
+
+def _has_mask(array) -> bool:
+    if isinstance(array, (list, tuple)):
+        return any(_has_mask(part) for part in array)
+    return isinstance(array, np.ma.MaskedArray) and np.ma.getmask(array) is not np.ma.nomask
 
 
 def _array(data) -> np.ndarray:

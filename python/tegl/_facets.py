@@ -138,7 +138,7 @@ class FacetLevel:
 
     @functools.cached_property
     def euler(self) -> np.ndarray:
-        """#F Euler characteristics: 1, but for polyhedra with handles (less) or cavities (more)."""
+        """#F Euler characteristics: 1; other numbers for polyhedra with handles (less) or cavities (more)."""
         return _fixed(self._core.euler(self.dimension))
 
     @property

@@ -19,8 +19,6 @@ def axes_of(periodic: object, prepared: _arguments.Prepared,
             curved: Sequence[tuple[int, int, np.ndarray, str, str]] = ()) -> tuple[list[int], list[float]]:
     """The library's axes and their periods (NaN: by the samples) of the argument `periodic`; `curved`: of `curved_axes`."""
     if isinstance(periodic, str) and periodic == "auto":
-        if prepared.ndim > 4:
-            return [], []  # the library has periodic axes in 2D to 4D
         found = _tegl.longitude_axes(prepared.image, curved)
         return found, [float("nan")] * len(found)
     if isinstance(periodic, str) and periodic == "all":
@@ -47,7 +45,7 @@ def _axis(axis: int | str, prepared: _arguments.Prepared,
           curved: Sequence[tuple[int, int, np.ndarray, str, str]]) -> int:
     """The library's axis of a name or number. "lon" and "longitude" also are the axis along which longitudes, by their unit,
     run around the globe; so is the name of longitudes in an array of several dimensions."""
-    if not isinstance(axis, str) or prepared.ndim > 4:
+    if not isinstance(axis, str):
         return prepared.library_axis(axis)
     if axis not in prepared.names:
         found = _tegl.longitude_axes(prepared.image, curved) if axis in ("lon", "longitude") else []

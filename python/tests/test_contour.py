@@ -379,6 +379,13 @@ def test_longitudes_that_span_360_degrees_are_found():
     contour = tegl.contour(in_5d, 0.5, periodic="auto")
     assert np.array_equal(contour.vertices, tegl.contour(in_5d, 0.5).vertices)
     assert tegl.count(in_5d, 0.5, periodic="auto") == (len(contour.vertices), len(contour.simplices))
+    around = {"axis_names": ("b", "a", "z", "y", "lon"), "axis_units": ("", "", "", "", "degrees_east"),
+              "spacing": (1, 1, 1, 1, 120)}
+    with pytest.raises(ValueError, match="5D .*division 'kuhn' or 'symmetric'"):
+        tegl.contour(in_5d, 0.5, periodic="auto", **around)
+    wrapped = tegl.contour(in_5d, 0.5, periodic="auto", division="kuhn", **around)
+    named = tegl.contour(in_5d, 0.5, periodic="longitude", division="kuhn", **around)
+    assert np.array_equal(wrapped.simplices, named.simplices) and len(wrapped.periods) == 1
     with pytest.raises(TypeError, match="'all', 'auto', 'none', or a dict"):
         tegl.contour(spot, 0.0, periodic=1.5)
 

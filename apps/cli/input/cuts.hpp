@@ -49,7 +49,7 @@ struct CutAxis {
 };
 
 /// The axis with the range of the unrolled contour, which is a whole period if the contour's share of a period depends
-/// on this coordinate only. `axis`: with the range of the wrapped contour. N is 3 or 4.
+/// on this coordinate only. `axis`: with the range of the wrapped contour. N is 3 to 5.
 template <int N>
 CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods);
 

@@ -330,8 +330,9 @@ void ExtractionOptions::require_to_5d() const {
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--triangulation {} with --division and {}; expected compact", triangulation_, kWhat));
   if (wants_shape_normals())
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--normals {} with {}; expected --normals gradient, or none", normals_, kWhat));
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("--normals {} with {}; expected normals from the image's gradient, or none", normals_, kWhat));
   if (polygon_triangulation())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--triangulation {} with {}; expected compact or barycentric", triangulation_, kWhat));
@@ -399,11 +400,11 @@ std::size_t axis_named(const std::string& name, const std::vector<AxisNames>& ax
     has_names = has_names || all.back() != letters.back();
     has_longitudes = has_longitudes || axes[a].is_longitude;
   }
-  throw Error(ErrorCode::InvalidArgument,
-              fmt::format("--periodic {} names no axis; expected one of {}{}{}, or all, auto or none", name,
-                          fmt::join(all, ", "),
-                          has_names ? fmt::format(", or {} for them in this order", fmt::join(letters, ", ")) : "",
-                          has_longitudes ? ", or longitude" : ""));
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("--periodic {} names no axis; expected one of {}{}{}, or all, {}or none", name, fmt::join(all, ", "),
+                  has_names ? fmt::format(", or {} for them in this order", fmt::join(letters, ", ")) : "",
+                  has_longitudes ? ", or longitude" : "", axes.size() > 4 ? "" : "auto "));
 }
 
 /// The axes that --periodic names.

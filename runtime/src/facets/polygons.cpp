@@ -321,7 +321,7 @@ Contour<3, Real> triangulate(const FacetHierarchy<3, Real>& facets, PolygonTrian
   if (facets.cells != 0)
     throw Error(
         ErrorCode::UnsupportedData,
-        "polygons in the cells of a mesh or lattice, whose common faces are not known; expected those of an image");
+        "polygons in the cells of a mesh or lattice, whose common faces are not known; expected polygons of an image");
   if (!facets.periods.empty())
     throw Error(ErrorCode::UnsupportedData,
                 "facets with periodic axes, whose polygons cross the seam; expected facets without periods");
