@@ -199,6 +199,8 @@ def test_masked_samples_are_missing():
     assert_same(tegl.contour(np.ma.masked_array(array, ~mask), 0.1), expected)
     layers = [np.ma.masked_array(layer, ~valid) for layer, valid in zip(array, mask)]
     assert_same(tegl.contour(layers, 0.1), expected)
+    assert_same(tegl.contour([layers, list(2 * np.ma.stack(layers))], 0.1),
+                tegl.contour(np.stack([with_nan, 2 * with_nan]), 0.1))
     labels = np.ma.masked_array((2 * array).astype(np.int16), ~mask)
     assert_same(tegl.contour(list(labels), label=1), tegl.contour(labels, label=1))
     assert_same(tegl.contour(np.ma.masked_array(array, array > 9), 0.1, mask=mask), expected)
