@@ -201,7 +201,7 @@ const FaceBlock<N>& RowFaces<N>::look_at(std::size_t word) noexcept {
   const std::size_t count = std::min(block_.kSamples, samples_ - base_[0]);
   block_.tiles = count - 1;
   estimator_.source().corner_rows(base_, count, block_.samples[0].data(), block_.kPitch);
-  for (auto& row : block_.samples) std::fill_n(row.data() + count, block_.kPitch - block_.kSamples, 0.0);
+  for (auto& row : block_.samples) std::fill_n(row.data() + count, block_.kPitch - count, 0.0);
   if (estimator_.is_by_means())
     decide_by_means(block_, estimator_.isovalue());
   else
@@ -248,10 +248,11 @@ Word join(const FaceBlock<3>& block, double isovalue, const RowTable& table, con
     const auto values = corners_of_cube<3, 7>(block, open.with_more.places[i], 0);
     choose(open.with_more, i, static_cast<unsigned>(decide_centre(values, isovalue, open.with_more.entries[i])));
   }
+  if (open.with_one.count == 0) return 0;
   JoinQuestions questions;
   ask(block, open.with_one, questions);
   answer(questions, isovalue);
-  const Word asked = open.with_one.count == 0 ? 0 : ~Word{0} >> (kWordBits - open.with_one.count);
+  const Word asked = ~Word{0} >> (kWordBits - open.with_one.count);
   for (Word rest = with_answer(questions, JoinQuestions::yes) & asked; rest != 0; rest &= rest - 1) {
     const auto q = static_cast<std::size_t>(std::countr_zero(rest));
     choose(open.with_one, q, 1u + unsigned{cube_joins()[open.with_one.entries[q]].high});  // separate, low, high

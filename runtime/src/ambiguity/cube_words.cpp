@@ -34,8 +34,9 @@ struct CubeBytes {
   /// By entry, as bits: whether one pair of edges may join inside the cube, or more.
   alignas(64) std::array<std::uint8_t, 128> with_one_pair{}, with_more{};
 };
-/// Defined below, among the code for all processors.
-extern const CubeBytes kCubeBytes;
+/// Defined below, among the code for all processors. Made at the first call, which may precede the constants' dynamic
+/// initialisation.
+const CubeBytes& cube_bytes() noexcept;
 
 }  // namespace tegl::detail
 
@@ -59,10 +60,10 @@ struct Entries {
   __m512i low, high;
 
   /// `faces`: bits of the high squares; others are ignored.
-  HWY_INLINE Entries(__m512i signatures, __m512i faces) {
-    __m512i bits = _mm512_and_si512(faces, looked_up(kCubeBytes.ambiguous, signatures));
+  HWY_INLINE Entries(const CubeBytes& bytes, __m512i signatures, __m512i faces) {
+    __m512i bits = _mm512_and_si512(faces, looked_up(bytes.ambiguous, signatures));
     const auto moving = [&](std::size_t step) HWY_ATTR {
-      const __m512i moved = _mm512_and_si512(bits, looked_up(kCubeBytes.moved[step], signatures));
+      const __m512i moved = _mm512_and_si512(bits, looked_up(bytes.moved[step], signatures));
       bits = _mm512_xor_si512(bits, moved);
       return moved;
     };
@@ -73,12 +74,12 @@ struct Entries {
     bits = _mm512_or_si512(bits, _mm512_srli_epi16(by_two, 2));
     const __m512i by_four = moving(2);
     bits = _mm512_or_si512(bits, _mm512_srli_epi16(by_four, 4));
-    low = _mm512_add_epi8(looked_up(kCubeBytes.first_low, signatures), bits);
-    high = looked_up(kCubeBytes.first_high, signatures);
+    low = _mm512_add_epi8(looked_up(bytes.first_low, signatures), bits);
+    high = looked_up(bytes.first_high, signatures);
     high = _mm512_mask_add_epi8(high, _mm512_cmplt_epu8_mask(low, bits), high, _mm512_set1_epi8(1));
   }
 
-  /// Those of entries in a set, as bits by entry.
+  /// Which of the entries are in a set, as bits by lane.
   HWY_INLINE Word in(const std::array<std::uint8_t, 128>& set) const {
     const __m512i byte = _mm512_or_si512(_mm512_and_si512(_mm512_srli_epi16(low, 3), _mm512_set1_epi8(31)),
                                          _mm512_slli_epi16(high, 5));  // `high` is less than 4
@@ -126,13 +127,14 @@ HWY_INLINE void choose_by(const std::uint8_t* high, const Variant* variants, Cub
     return _mm512_maskz_compress_epi8(ambiguous, _mm512_maskz_compress_epi8(cubes.active, by_place));
   };
   const __m512i faces = of_active(_mm512_loadu_si512(high));
-  const Entries entries(_mm512_maskz_compress_epi8(ambiguous, narrow), faces);
+  const CubeBytes& bytes = cube_bytes();
+  const Entries entries(bytes, _mm512_maskz_compress_epi8(ambiguous, narrow), faces);
   const auto count = static_cast<unsigned>(std::popcount(ambiguous));
   if constexpr (Rule == CentreRule::by_joins) {
     const Word used = ~Word{0} >> (kWordBits - count);
     const __m512i numbers = _mm512_maskz_compress_epi8(ambiguous, count_up), places = of_active(count_up);
-    list_open(entries.in(kCubeBytes.with_one_pair) & used, entries, numbers, places, open.with_one);
-    list_open(entries.in(kCubeBytes.with_more) & used, entries, numbers, places, open.with_more);
+    list_open(entries.in(bytes.with_one_pair) & used, entries, numbers, places, open.with_one);
+    list_open(entries.in(bytes.with_more) & used, entries, numbers, places, open.with_more);
   }
   // their variants, sixteen at a time
   alignas(64) std::array<std::uint8_t, 64> low, upper, centres;
@@ -235,7 +237,9 @@ HWY_AFTER_NAMESPACE();
 
 namespace tegl::detail {
 
-const CubeBytes kCubeBytes = [] {
+namespace {
+
+CubeBytes made_cube_bytes() {
   CubeBytes bytes;
   for (unsigned signature = 0; signature < 256; ++signature) {
     bytes.first_low[signature] = static_cast<std::uint8_t>(tables::kTile3Resolved.first_entry[signature]);
@@ -257,7 +261,14 @@ const CubeBytes kCubeBytes = [] {
     if (pairs != 0) set[entry / 8] = static_cast<std::uint8_t>(set[entry / 8] | 1u << entry % 8);
   }
   return bytes;
-}();
+}
+
+}  // namespace
+
+const CubeBytes& cube_bytes() noexcept {
+  static const CubeBytes bytes = made_cube_bytes();
+  return bytes;
+}
 
 HWY_EXPORT(choose);
 void choose_variants(const std::uint8_t* high, const Variant* variants, CentreRule rule, CubesOfWord& cubes,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "ambiguity/saddle.hpp"
 
@@ -101,7 +102,8 @@ template <int N>
 struct Samples {
   using D = HWY_NAMESPACE::D;
   static constexpr double kUnitOfMeans = 0x1p-46, kUnitOfSaddles = 0x1p-47;
-  static constexpr double kMostOfMeans = 0x1p1000, kLeastOfSaddles = 0x1p-480, kMostOfSaddles = 0x1p500;
+  static constexpr double kLeastOfMeans = 0.0, kMostOfMeans = 0x1p1000;
+  static constexpr double kLeastOfSaddles = 0x1p-480, kMostOfSaddles = 0x1p500;
   static constexpr std::size_t kRows = FaceBlock<N>::kRows;
 
   const FaceBlock<N>& block;
@@ -116,20 +118,23 @@ struct Samples {
 /// The numbers that faces are decided by: the differences of a block's samples from the isovalue, rounded to 24 bits.
 /// Twice as many lanes are as fast, and if rounding could decide a face, its samples are taken instead. With an error
 /// of each difference of less than 2^-23.9 of it, the sum of 4 or 8 has one of less than 2^-21.9 of the sum of their
-/// absolute values, and a determinant, fused or not, one of less than 2^-20.9 of the square of the largest.
+/// absolute values, and a determinant, fused or not, one of less than 2^-20.9 of the square of the largest. Differences
+/// below 2^-126 have larger errors, so these bounds are taken of sums and squares that are far above. A difference that
+/// is rounded to 0 keeps its sign, and one of 0 is +0.
 template <int N>
 class ShortDifferences {
  public:
   using D = hn::ScalableTag<float>;
   static constexpr float kUnitOfMeans = 0x1p-20f, kUnitOfSaddles = 0x1p-20f;
-  static constexpr float kMostOfMeans = 0x1p100f, kLeastOfSaddles = 0x1p-40f, kMostOfSaddles = 0x1p40f;
+  static constexpr float kLeastOfMeans = 0x1p-100f, kMostOfMeans = 0x1p100f;
+  static constexpr float kLeastOfSaddles = 0x1p-40f, kMostOfSaddles = 0x1p40f;
   static constexpr std::size_t kRows = FaceBlock<N>::kRows;
   static constexpr float isovalue = 0.0f;
 
   HWY_INLINE ShortDifferences(const FaceBlock<N>& block, double of) {
     const HWY_NAMESPACE::D d;
     const hn::Rebind<float, HWY_NAMESPACE::D> narrow;
-    const auto minus = hn::Set(d, -of);
+    const auto minus = hn::Set(d, of == 0.0 ? 0.0 : -of);  // adding 0 makes 0 of -0
     for (std::size_t r = 0; r < kRows; ++r)
       for (std::size_t i = 0; i < block.kSamples; i += hn::Lanes(d))
         hn::StoreU(hn::DemoteTo(narrow, hn::Add(hn::LoadU(d, block.samples[r].data() + i), minus)), narrow,
@@ -158,7 +163,7 @@ struct Means {
   }
 };
 
-/// Bound of the rounding errors of all sums; infinite if values are too large or not finite.
+/// Bound of the rounding errors of all sums; infinite if values are too small for it, too large or not finite.
 template <class From>
 HWY_INLINE auto error_of_means(const From& from, std::size_t at) {
   const typename From::D d;
@@ -167,8 +172,9 @@ HWY_INLINE auto error_of_means(const From& from, std::size_t at) {
   for (std::size_t r = 0; r < From::kRows; ++r)
     size = hn::Add(size, hn::Add(hn::Abs(from.at(r, at)), hn::Abs(from.at(r, at + 1))));
   const auto infinite = hn::Set(d, static_cast<T>(HUGE_VAL));
-  return hn::IfThenElse(hn::Lt(size, hn::Set(d, From::kMostOfMeans)), hn::Mul(size, hn::Set(d, From::kUnitOfMeans)),
-                        infinite);
+  const auto in_range =
+      hn::And(hn::Gt(size, hn::Set(d, From::kLeastOfMeans)), hn::Lt(size, hn::Set(d, From::kMostOfMeans)));
+  return hn::IfThenElse(in_range, hn::Mul(size, hn::Set(d, From::kUnitOfMeans)), infinite);
 }
 
 /// Decides the faces along two axes across the row, and those that these span with the row.
@@ -302,7 +308,7 @@ struct Saddles {
   hn::Vec<D> least;
 
   HWY_INLINE Saddles() : least(hn::Set(D(), hwy::HighestValue<T>())) {}
-  /// Arguments: corner 0, its two neighbours, and the opposite corner, each minus the isovalue. None is -0.
+  /// Arguments: corner 0, its two neighbours, and the opposite corner, each minus the isovalue. -0 is a low value.
   template <class V>
   HWY_INLINE void take(unsigned face, V first, V second, V third, V last) {
     const D d;
@@ -330,8 +336,13 @@ HWY_INLINE auto take_saddles(const From& from, std::size_t at, Saddles<D>& saddl
   static constexpr FaceNumbers<N> kNumbers;
   using T = hn::TFromD<D>;
   // Adding 0 and not subtracting it makes 0 of -0.
-  const auto minus = hn::Set(D(), from.isovalue == T{0} ? T{0} : -from.isovalue);
-  const auto difference = [&](std::size_t row, std::size_t to) HWY_ATTR { return hn::Add(from.at(row, to), minus); };
+  [[maybe_unused]] const auto minus = hn::Set(D(), from.isovalue == T{0} ? T{0} : -from.isovalue);
+  const auto difference = [&](std::size_t row, std::size_t to) HWY_ATTR {
+    if constexpr (std::is_same_v<From, ShortDifferences<N>>)
+      return from.at(row, to);  // -0 if a low value was rounded
+    else
+      return hn::Add(from.at(row, to), minus);
+  };
   auto largest = hn::Zero(D());
   for (unsigned row = 0; row < From::kRows; ++row)
     for (unsigned side = 0; side < 2; ++side) largest = hn::Max(largest, hn::Abs(difference(row, at + side)));

@@ -259,16 +259,22 @@ Grid<N> with_indices(const Grid<N>& grid, std::span<const CurvedAxis> curved, do
   return result;
 }
 
-/// The grid of a contour's indices. The sign of the first curved axis's step is that of its vertices' coordinates,
-/// which are 0 or have the same sign: finding it by the grid's orientation would read memory.
+/// The grid of a contour's indices. The sign of the first curved axis's step is the sign of its vertices' coordinates:
+/// finding it by the grid's orientation would read memory. Coordinates near 0 may have another sign if the contour was
+/// smoothed or simplified, so they count only if all are near 0.
 template <int N, class Real>
 Grid<N> index_grid_of(const Contour<N, Real>& contour, const Grid<N>& grid, std::span<const CurvedAxis> curved) {
   detail::require_curved<N>(grid, curved);
   if (curved.empty()) return grid;
   const auto axis = static_cast<std::size_t>(curved.front().axis);
-  const auto has_sign = [&](const auto& vertex) { return vertex[axis] != 0; };
-  const auto found = std::find_if(contour.vertices.begin(), contour.vertices.end(), has_sign);
-  return with_indices(grid, curved, found != contour.vertices.end() && (*found)[axis] < 0 ? -1.0 : 1.0);
+  const auto beyond = [&](double least) {
+    const auto is_beyond = [&](const auto& vertex) { return std::abs(vertex[axis]) > least; };
+    return std::find_if(contour.vertices.begin(), contour.vertices.end(), is_beyond);
+  };
+  for (const double least : {0.5, 0x1p-10, 0.0})
+    if (const auto found = beyond(least); found != contour.vertices.end())
+      return with_indices(grid, curved, (*found)[axis] < 0 ? -1.0 : 1.0);
+  return with_indices(grid, curved, detail::CurvedMap<N>(grid, curved).main_orientation());
 }
 
 }  // namespace

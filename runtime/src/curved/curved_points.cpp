@@ -87,6 +87,7 @@ CurvedPoints::CurvedPoints(std::size_t samples, std::span<const CoordinateArray>
                 fmt::format("{} arrays of coordinates; expected 1 to {}", arrays.size(), kMostColumns));
   if (copy_columns(arrays, samples, threads, allocate<float>(), pitch_)) return;
   floats_ = nullptr;
+  memory_.reset();  // before twice as much is requested
   copy_columns(arrays, samples, threads, allocate<double>(), pitch_);
 }
 

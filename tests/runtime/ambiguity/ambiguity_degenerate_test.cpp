@@ -59,6 +59,19 @@ TEST(Degenerate, MasksIn3dHaveClosedManifolds) { expect_closed_manifolds<3>(4, c
 TEST(Degenerate, IntegersIn4dHaveClosedManifolds) { expect_closed_manifolds<4>(5, cases_to_test(100, 2), 3, false); }
 TEST(Degenerate, MasksIn4dHaveClosedManifolds) { expect_closed_manifolds<4>(6, cases_to_test(100, 2), 3, true); }
 
+/// Tiles of full words are decided many at a time, the tiles after them one by one.
+TEST(Degenerate, RoundOffBesideWholeNumbersIsDecidedAlikeInAllTiles) {
+  OwnedImage<double, 3> image{Grid<3>::unit({70, 4, 4}), {}};
+  for (std::size_t s = 0; s < 70 * 4 * 4; ++s) {
+    const std::size_t sum = s % 70 + s / 70 % 4 + s / 280;
+    image.values.push_back(sum % 2 != 0 ? 1.0 : sum % 4 == 0 ? -1e-60 : -1.0);
+  }
+  for (auto [name, options] : all_ways()) {
+    options.close = true;
+    EXPECT_TRUE(is_closed_oriented_manifold(check(extract<double>(image.view(), 0.0, options)))) << name;
+  }
+}
+
 /// `expected` is the topology of the field just below the isovalue; epsilon keeps the vertices inside their edges.
 template <int N>
 void expect_high_at_ties(std::uint64_t seed, std::size_t count, std::size_t samples, bool mask, bool padded) {

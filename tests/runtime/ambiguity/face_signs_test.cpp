@@ -60,6 +60,8 @@ std::vector<Kind> kinds() {
       {"large beside small",
        [](Random& random) { return std::ldexp(uniform(random), static_cast<int>(random() % 40)); }, 0.1, false},
       {"tiny", [](Random& random) { return std::ldexp(uniform(random), -1060); }, 0.0, false},
+      {"round-off beside whole numbers", pick({-1e-60, 1e-60, -1.0, 1.0}), 0.0, false},
+      {"as small as the smallest floats", [](Random& random) { return std::ldexp(uniform(random), -147); }, 0.0, false},
       {"huge", pick({-1.7e308, -1.6e308, 1.6e308, 1.7e308}), 0.0, false},
       {"infinite", pick({-kInfinity, kInfinity, -1.0, 1.0}), 0.0, false},
   };

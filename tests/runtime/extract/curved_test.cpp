@@ -200,6 +200,32 @@ TEST(Curved, FacesTheSameSideOnMirroredGrids) {
     }
 }
 
+TEST(Curved, FacesTheRightSideOnAMirroredGridAtItsFirstSamples) {
+  // All vertices have the index 0 along the mirrored axis.
+  const auto mirrored = [](const std::array<double, 3>& u) { return std::array{1.0 - u[0], u[1], u[2]}; };
+  const CurvedImage<3> image =
+      curved_image<3>({5, 4, 3}, mirrored, [](const std::array<double, 3>& x) { return x[0] - 1.0; });
+  const auto contour = extract_curved(image.image.view(), image.curved, 0.0, {.normals = Normals::differences});
+  ASSERT_EQ(contour.vertices.size(), 12u);
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    EXPECT_EQ(contour.vertices[v][0], 1.0);
+    EXPECT_NEAR(contour.normals[v][0], -1.0, 1e-12) << "towards lower samples";
+  }
+}
+
+TEST(Curved, SmallDeviationsFromTheFirstIndexDoNotTurnAContour) {
+  const auto mirrored = [](const std::array<double, 3>& u) { return std::array{1.0 - u[0], u[1], u[2]}; };
+  const CurvedImage<3> image =
+      curved_image<3>({9, 4, 3}, mirrored, [](const std::array<double, 3>& x) { return 0.6 - x[0] - 0.3 * x[1]; });
+  const OwnedImage<double, 3> flat{index_grid<3>(image.image.grid, image.curved), image.image.values};
+  auto indices = extract<double>(flat.view(), 0.0);
+  const auto expected = on_curved_grid<double, 3>(indices, image.image.grid, image.curved);
+  indices.vertices.insert(indices.vertices.begin(), {1e-8, 1.0, 1.0});
+  const auto moved = on_curved_grid<double, 3>(indices, image.image.grid, image.curved);
+  for (std::size_t v = 0; v < expected.vertices.size(); ++v)
+    EXPECT_EQ(moved.vertices[v + 1], expected.vertices[v]) << v;
+}
+
 TEST(Curved, OfPolarCoordinatesIsACircle) {
   // All of the plane around a hole but for the seam, at which the samples are doubled.
   const auto polar = [](const std::array<double, 2>& u) {
