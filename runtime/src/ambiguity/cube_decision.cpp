@@ -263,7 +263,7 @@ Word join(const FaceBlock<3>& block, double isovalue, const RowTable& table, con
   return unsure;
 }
 
-/// Those of `ambiguous`, by number among the active tiles, that are at the positions `at`.
+/// The tiles in `ambiguous` (by number among the active tiles) that are at the positions `at`.
 Word numbers_of(Word at, const CubesOfWord& cubes) noexcept {
   Word numbers = 0;
   for (Word rest = cubes.ambiguous; rest != 0; rest &= rest - 1) {

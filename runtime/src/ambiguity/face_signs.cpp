@@ -272,7 +272,7 @@ HWY_INLINE auto means_at(const From& from, std::size_t at, FaceBlock<N>& block) 
 }
 
 /// Decides the faces of a block's tiles: by `decide(from, at)`, which returns the tiles of which rounding cannot decide
-/// a face. Returns those of which it could, as bits.
+/// a face. Returns the tiles of such faces, as bits.
 template <int N, class Decide>
 HWY_INLINE std::uint64_t decide_block(FaceBlock<N>& block, double isovalue, const Decide& decide) {
   const D d;

@@ -24,7 +24,7 @@ struct CurvedBlock {
     std::array<double, kMost> weight{};
   };
   std::size_t count = 0;
-  std::array<Ends, kMostAxes> ends{};  ///< by CurvedArrays, counted in numbers, in numbers
+  std::array<Ends, kMostAxes> ends{};  ///< by CurvedArrays, as offsets in numbers
   std::uint64_t inside = 0;            ///< bit i: point i is not on an edge, or at its second end
 };
 

@@ -308,7 +308,7 @@ template <int N>
           const Word before = room.active[word] & ((Word{1} << (at % kWordBits)) - 1);
           const std::uint32_t start = next - few_bits(before);
           const auto tiles = static_cast<std::uint32_t>(std::popcount(room.active[word]));
-          if (start < first || start + tiles > first + kWordBits) {  // not all among those looked at
+          if (start < first || start + tiles > first + kWordBits) {  // a tile of the word is outside of the window
             first = start;
             rest = members();
           }

@@ -24,7 +24,7 @@ struct EdgePoints {
   const double* alphas;     ///< by edge: interpolation parameter of its vertex
   std::size_t count;
   int axis;
-  bool in_one_row;                     ///< `start` and `end` have one entry, which is that of all edges
+  bool in_one_row;                     ///< `start` and `end` have one entry for all edges
   std::array<const double*, N> start;  ///< for axes 1 ... N - 2, by edge: coordinate of its row
   const double* end;                   ///< for those axes, by edge: coordinate at its other end
   double layer, next_layer;            ///< coordinates of the layer and of the next one
