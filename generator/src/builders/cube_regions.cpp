@@ -9,7 +9,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -95,90 +94,48 @@ void require_other_doubles(const std::vector<std::uint32_t>& centres, bool high,
   }
 }
 
-/// Makes the regions of all lists.
-class RegionTable {
- public:
-  RegionTable(const CubeLists& lists, RegionUse use) : lists_(lists), use_(use) {}
-
-  CubeRegions make() {
-    for (std::size_t number = 0; number <= lists_.lists.size(); ++number) add_list(number);
-    result_.first_region.push_back(static_cast<std::uint32_t>(result_.regions.size()));
-    return std::move(result_);
-  }
-
- private:
-  [[nodiscard]] bool is_cap() const { return use_ == RegionUse::caps; }
-  [[nodiscard]] bool is_alternating() const { return use_ == RegionUse::even_copies || use_ == RegionUse::odd_copies; }
-  [[nodiscard]] SquareFans fans() const {
-    if (!is_alternating()) return SquareFans::lowest;
-    return use_ == RegionUse::even_copies ? SquareFans::even : SquareFans::odd;
-  }
-
-  /// Both sides of a list, or of a cube of one sign.
-  void add_list(std::size_t number) {
-    const std::size_t regions = result_.regions.size(), tetrahedra = result_.tetrahedra.size(),
-                      centres = result_.centres.size();
-    doubles_ = 0;
-    bool is_divided = true;
-    for (const bool high : {false, true}) {
-      result_.first_region.push_back(static_cast<std::uint32_t>(result_.regions.size()));
-      if (!is_cap() || high) is_divided = add_side(number, high) && is_divided;
-    }
-    result_.is_undivided.push_back(!is_divided);
-    if (is_divided) return;
-    result_.regions.resize(regions);
-    result_.tetrahedra.resize(tetrahedra);
-    result_.centres.resize(centres);
-    result_.first_region.back() = static_cast<std::uint32_t>(regions);
-  }
-
-  /// Returns whether all regions are divided.
-  bool add_side(std::size_t number, bool high) {
-    const bool is_whole = number == lists_.lists.size();
-    const CubeLists::List list = is_whole ? CubeLists::List{} : lists_.lists[number];
-    const CubeSide side{is_whole && high ? 255u : list.signature, list.high_squares, high, fans()};
-    std::vector<Triangle> contour;
-    const auto triangles = is_whole ? std::span<const std::uint8_t>() : lists_.triangles_of(number);
-    for (std::size_t t = 0; t < triangles.size(); t += 3)
-      contour.push_back({static_cast<std::uint8_t>(kFirstEdge + triangles[t]),
-                         static_cast<std::uint8_t>(kFirstEdge + triangles[t + 1]),
-                         static_cast<std::uint8_t>(kFirstEdge + triangles[t + 2])});
-    const RegionFrame frame =
-        region_frame(std::span(list.masks).first(list.own_vertices), list.barycentres, contour, is_cap());
-    for (const std::vector<Triangle>& surface : side.regions(contour)) {
-      const auto division = divide_side_region(proof_, frame, surface, high);
-      if (!division && is_alternating()) return false;
-      if (!division)
-        throw Error(ErrorCode::CertificateFailed,
-                    fmt::format("a {} of the cube of signature {} without a proved division",
-                                is_cap() ? "cap" : "region", side.signature));
-      certify(division->tetrahedra, surface);
-      if (!is_cap()) require_other_doubles(division->centres, high, doubles_);
-      add(*division, surface);
-    }
-    return true;
-  }
-
-  void add(const RegionDivision& division, const std::vector<Triangle>& surface) {
-    Set vertices = 0;
-    for (const Triangle& t : surface) vertices |= set_of(t);
-    result_.regions.push_back(
-        {static_cast<std::uint8_t>(vertices & 0xffu), static_cast<std::uint8_t>(division.centres.size()),
-         static_cast<std::uint16_t>(division.tetrahedra.size()), static_cast<std::uint32_t>(result_.tetrahedra.size()),
-         static_cast<std::uint32_t>(result_.centres.size())});
-    result_.tetrahedra.insert(result_.tetrahedra.end(), division.tetrahedra.begin(), division.tetrahedra.end());
-    result_.centres.insert(result_.centres.end(), division.centres.begin(), division.centres.end());
-  }
-
-  const CubeLists& lists_;
-  RegionUse use_;
-  const RegionProof proof_;
-  std::uint32_t doubles_ = 0;  ///< of the low regions of a list
-  CubeRegions result_;
-};
-
 }  // namespace
 
-CubeRegions make_cube_regions(const CubeLists& lists, RegionUse use) { return RegionTable(lists, use).make(); }
+CubeRegions make_cube_regions(const CubeLists& lists, bool is_cap) {
+  const RegionProof proof;
+  CubeRegions result;
+  const std::size_t whole = lists.lists.size();
+  std::uint32_t doubles = 0;  // of the low regions of a list
+  for (std::size_t number = 0; number <= whole; ++number)
+    for (const bool high : {false, true}) {
+      doubles = high ? doubles : 0;
+      result.first_region.push_back(static_cast<std::uint32_t>(result.regions.size()));
+      if (is_cap && !high) continue;
+      const CubeLists::List list = number == whole ? CubeLists::List{} : lists.lists[number];
+      const CubeSide side{number == whole && high ? 255u : list.signature, list.high_squares, high};
+      std::vector<Triangle> contour;
+      const auto triangles = number == whole ? std::span<const std::uint8_t>() : lists.triangles_of(number);
+      for (std::size_t t = 0; t < triangles.size(); t += 3)
+        contour.push_back({static_cast<std::uint8_t>(kFirstEdge + triangles[t]),
+                           static_cast<std::uint8_t>(kFirstEdge + triangles[t + 1]),
+                           static_cast<std::uint8_t>(kFirstEdge + triangles[t + 2])});
+      const RegionFrame frame =
+          region_frame(std::span(list.masks).first(list.own_vertices), list.barycentres, contour, is_cap);
+      for (const std::vector<Triangle>& surface : side.regions(contour)) {
+        const auto division = divide_side_region(proof, frame, surface, high);
+        if (!division)
+          throw Error(ErrorCode::CertificateFailed,
+                      fmt::format("a {} of the cube of signature {} without a proved division",
+                                  is_cap ? "cap" : "region", side.signature));
+        certify(division->tetrahedra, surface);
+        if (!is_cap) require_other_doubles(division->centres, high, doubles);
+        Set vertices = 0;
+        for (const Triangle& t : surface) vertices |= set_of(t);
+        result.regions.push_back(
+            {static_cast<std::uint8_t>(vertices & 0xffu), static_cast<std::uint8_t>(division->centres.size()),
+             static_cast<std::uint16_t>(division->tetrahedra.size()),
+             static_cast<std::uint32_t>(result.tetrahedra.size()), static_cast<std::uint32_t>(result.centres.size())});
+        result.tetrahedra.insert(result.tetrahedra.end(), division->tetrahedra.begin(), division->tetrahedra.end());
+        result.centres.insert(result.centres.end(), division->centres.begin(), division->centres.end());
+      }
+    }
+  result.first_region.push_back(static_cast<std::uint32_t>(result.regions.size()));
+  return result;
+}
 
 }  // namespace tegl::gen

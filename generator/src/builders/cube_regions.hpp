@@ -27,22 +27,13 @@ struct CubeRegions : RegionVertices {
   std::vector<std::uint32_t> first_region;  ///< by 2 * list + side
   std::vector<Region> regions;
   std::vector<Tetrahedron> tetrahedra;  ///< oriented so that they induce the list's triangles
-  std::vector<bool> is_undivided;       ///< by list: whether it has no regions here, as one of them has no division
   std::vector<std::uint32_t> centres;   ///< the corners (bit v) and edges (bit 8 + e) whose mean each is near, or
                                         ///< kFirstDouble << j: on the ray of own vertex j
 };
 
-/// For what regions are made.
-enum class RegionUse : std::uint8_t {
-  copies,       ///< copies of sides; polygons in squares are SquareFans::lowest, as in the regions of RegionStyle::fan
-  caps,         ///< to close contours at the image border: only the high sides, with the same fans
-  even_copies,  ///< copies of sides of tesseracts whose diagonals alternate; of cubes at the lower ends of axes
-  odd_copies,   ///< the same of cubes at the upper ends
-};
-
-/// Certifies every region, and proves that its tetrahedra are positive for all positions on edges and rays. With
-/// alternating diagonals, regions have fewer tetrahedra and centres, but not all have a division. Throws
-/// Error{CertificateFailed}, also if a region for other uses has none.
-[[nodiscard]] CubeRegions make_cube_regions(const CubeLists& lists, RegionUse use);
+/// `is_cap`: to close contours at the image border; then only the high sides. In squares, polygons are fans (CubeSide),
+/// as in the regions of RegionStyle::fan. Certifies every region, and proves that its tetrahedra are positive for all
+/// positions on edges and rays. Throws Error{CertificateFailed}.
+[[nodiscard]] CubeRegions make_cube_regions(const CubeLists& lists, bool is_cap);
 
 }  // namespace tegl::gen

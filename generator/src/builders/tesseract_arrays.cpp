@@ -219,16 +219,6 @@ void define_regions(std::string& text, const CubeRegions& regions, const std::st
                  suffix);
 }
 
-/// By list: bit `side` is set if it has no regions with alternating diagonals.
-void define_undivided(std::string& text, const TesseractArrays& arrays) {
-  const std::vector<bool>&even = arrays.regions[4].is_undivided, &odd = arrays.regions[5].is_undivided;
-  std::vector<unsigned> sides;
-  for (std::size_t list = 0; list < even.size(); ++list)
-    sides.push_back((even[list] ? 1u : 0u) + (odd[list] ? 2u : 0u));
-  define(text, fmt::format("std::array<std::uint8_t, {}> CubeRegions::kUndivided", sides.size()), sides, number, "{{",
-         "}}");
-}
-
 }  // namespace
 
 std::size_t TesseractArrays::region_count() const {
@@ -252,11 +242,9 @@ TesseractArrays make_tesseract_arrays() {
   arrays.cube = std::move(*set.resolved);
   for (const VariantTables& variants : set.variants) {
     arrays.lists.push_back(make_cube_lists(arrays.cube, variants));
-    arrays.regions.push_back(make_cube_regions(arrays.lists.back(), RegionUse::copies));
+    arrays.regions.push_back(make_cube_regions(arrays.lists.back(), false));
   }
-  for (const CubeLists& lists : arrays.lists) arrays.regions.push_back(make_cube_regions(lists, RegionUse::caps));
-  for (const RegionUse use : {RegionUse::even_copies, RegionUse::odd_copies})
-    arrays.regions.push_back(make_cube_regions(arrays.lists[1], use));
+  for (const CubeLists& lists : arrays.lists) arrays.regions.push_back(make_cube_regions(lists, true));
   return arrays;
 }
 
@@ -273,8 +261,6 @@ std::string arrays_text(const TesseractArrays& arrays) {
   define_regions(text, arrays.regions[1], "Compact");
   define_regions(text, arrays.regions[2], "CapsBarycentric");
   define_regions(text, arrays.regions[3], "CapsCompact");
-  define_regions(text, arrays.regions[4], "Even");
-  define_regions(text, arrays.regions[5], "Odd");
   text += R"(
 }  // namespace
 
@@ -289,12 +275,7 @@ const CubeRegions& CubeRegions::instance(Triangulation triangulation) noexcept {
 const CubeRegions& CubeRegions::of_caps(Triangulation triangulation) noexcept {
   return triangulation == Triangulation::barycentric ? kRegionsOfCapsBarycentric : kRegionsOfCapsCompact;
 }
-
-const CubeRegions& CubeRegions::alternating(unsigned side) noexcept {
-  return side == 0 ? kRegionsOfEven : kRegionsOfOdd;
-}
 )";
-  define_undivided(text, arrays);
   return text;
 }
 

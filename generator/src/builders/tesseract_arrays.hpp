@@ -16,7 +16,7 @@ namespace tegl::gen {
 struct TesseractArrays {
   ResolvedCube cube;
   std::vector<CubeLists> lists;      ///< barycentric, compact
-  std::vector<CubeRegions> regions;  ///< barycentric, compact; caps of both, for closed borders; compact even, odd
+  std::vector<CubeRegions> regions;  ///< barycentric, compact; caps of both, for closed borders
 
   [[nodiscard]] std::size_t region_count() const;
   [[nodiscard]] unsigned most_triangles() const;  ///< maximum per list

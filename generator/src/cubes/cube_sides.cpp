@@ -51,26 +51,6 @@ std::vector<std::vector<RegionTriangle>> components_of(const std::vector<RegionT
 
 }  // namespace
 
-bool CubeSide::is_preferred(unsigned corner) const {
-  return fans != SquareFans::lowest && (std::popcount(corner) % 2 == 0) == (fans == SquareFans::even);
-}
-
-/// The corner from which the polygon in a square is a fan. `corners`: their number.
-std::uint8_t CubeSide::apex_of(std::span<const std::uint8_t> outline, unsigned corners) const {
-  const std::size_t n = outline.size();
-  if (corners == 3) {
-    std::size_t middle = 0;
-    while (outline[(middle + n - 1) % n] >= 8 || outline[middle] >= 8 || outline[(middle + 1) % n] >= 8) ++middle;
-    const std::uint8_t at = outline[middle], before = outline[(middle + n - 1) % n], after = outline[(middle + 1) % n];
-    if (fans == SquareFans::lowest || is_preferred(at)) return at;
-    return (before ^ at) > (after ^ at) ? before : after;
-  }
-  return *std::min_element(outline.begin(), outline.end(), [&](std::uint8_t a, std::uint8_t b) {
-    const bool a_preferred = a < 8 && is_preferred(a), b_preferred = b < 8 && is_preferred(b);
-    return a_preferred != b_preferred ? a_preferred : a < b;
-  });
-}
-
 void CubeSide::add_square(unsigned square, std::vector<RegionTriangle>& to) const {
   const unsigned axis = square / 2, b = axis == 0 ? 1 : 0, c = axis == 2 ? 1 : 2, at = (square % 2) << axis;
   std::array<unsigned, 4> ring = {at, at | 1u << b, at | 1u << b | 1u << c, at | 1u << c};
@@ -88,7 +68,13 @@ void CubeSide::add_square(unsigned square, std::vector<RegionTriangle>& to) cons
     for (std::size_t i = 0; i < n; ++i)
       if (outline[i] < 8) to.push_back({outline[(i + n - 1) % n], outline[i], outline[(i + 1) % n]});
   } else if (corners != 0) {
-    std::rotate(outline.begin(), std::find(outline.begin(), outline.end(), apex_of(outline, corners)), outline.end());
+    const auto is_apex = [&](std::size_t i) {
+      return corners != 3 ? outline[i] == *std::min_element(outline.begin(), outline.end())
+                          : outline[(i + n - 1) % n] < 8 && outline[i] < 8 && outline[(i + 1) % n] < 8;
+    };
+    std::size_t apex = 0;
+    while (!is_apex(apex)) ++apex;
+    std::rotate(outline.begin(), outline.begin() + static_cast<std::ptrdiff_t>(apex), outline.end());
     for (std::size_t i = 1; i + 1 < n; ++i) to.push_back({outline[0], outline[i], outline[i + 1]});
   }
 }

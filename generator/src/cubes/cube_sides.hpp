@@ -16,31 +16,19 @@ namespace tegl::gen {
 
 using RegionTriangle = std::array<std::uint8_t, 3>;  ///< by local vertices of RegionVertices
 
-/// How the polygons of a side are divided in squares, as fans.
-///
-/// `lowest`: from the lowest corner, or from the middle one of three.
-///
-/// `even`, `odd`: from an even corner (or an odd one), if the polygon has one. A corner is even if the sum of its
-/// coordinates is. So diagonals alternate, as in the division of a cube into five tetrahedra. Of two such corners, the
-/// lower one; of the two at the ends of three corners, the one along the higher axis from the middle.
-enum class SquareFans : std::uint8_t { lowest, even, odd };
-
 /// One side of a cube with its contour: the part with the high corners, or the one with the low corners.
 struct CubeSide {
   unsigned signature, high_squares;
   bool is_high;
-  SquareFans fans = SquareFans::lowest;
 
-  /// The boundary of the side, given its contour's triangles, by connected component: of each region of the side.
-  /// Adjacent cubes get the same triangles in their square (`even` and `odd` ones if they are at different ends of
-  /// their axes). Oriented outwards for the low side, inwards for the high side: this continues the contour, which is
-  /// oriented towards high.
+  /// The boundary of the side, given its contour's triangles, by connected component: of each region of the side. In
+  /// squares, each polygon is a fan from its lowest corner, or from the middle one of three. Adjacent cubes get the
+  /// same triangles. Oriented outwards for the low side, inwards for the high side: this continues the contour, which
+  /// is oriented towards high.
   [[nodiscard]] std::vector<std::vector<RegionTriangle>> regions(std::span<const RegionTriangle> contour) const;
 
  private:
   [[nodiscard]] bool has(unsigned corner) const { return ((signature >> corner & 1u) != 0) == is_high; }
-  [[nodiscard]] bool is_preferred(unsigned corner) const;
-  [[nodiscard]] std::uint8_t apex_of(std::span<const std::uint8_t> outline, unsigned corners) const;
   void add_square(unsigned square, std::vector<RegionTriangle>& to) const;
 };
 
