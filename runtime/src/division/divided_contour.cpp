@@ -413,7 +413,7 @@ class DividedExtraction {
     };
     add(first, 1.0 - alpha);
     add(second, alpha);
-    return PointGradients<N>::template unit<Real>(gradient);
+    return unit_of<Real>(gradient);
   }
   /// The vertex between two points of the cell at `at`, at a place in the cell.
   Vertex vertex_between(const CellPoint& first, const CellPoint& second, const std::array<double, N>& in_cell,
