@@ -9,6 +9,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -48,6 +49,17 @@ template <class Real, int N>
 [[nodiscard]] Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const ExtractOptions& options,
                                              const Surroundings<N>& around);
 
+/// A vector of length 1, or 0 if it is zero or not finite.
+template <class Real, std::size_t Size>
+[[nodiscard]] std::array<Real, Size> unit_of(const std::array<double, Size>& vector) noexcept {
+  double length = 0.0;
+  for (const double x : vector) length = std::hypot(length, x);
+  std::array<Real, Size> result{};
+  if (length > 0.0 && std::isfinite(length))
+    for (std::size_t i = 0; i < Size; ++i) result[i] = static_cast<Real>(vector[i] / length);
+  return result;
+}
+
 template <int N>
 class PointGradients {
  public:
@@ -64,15 +76,10 @@ class PointGradients {
   /// The gradient at one of the points; 0 along directions in which there are no neighbours.
   [[nodiscard]] const Gradient& at(Index p) const noexcept { return gradients_[number(p)]; }
 
-  /// A vector of length 1, or 0 if it is zero or not finite.
+  /// As `unit_of`.
   template <class Real>
   [[nodiscard]] static std::array<Real, N> unit(const Gradient& vector) noexcept {
-    double length = 0.0;
-    for (const double x : vector) length = std::hypot(length, x);
-    std::array<Real, N> result{};
-    if (length > 0.0 && std::isfinite(length))
-      for (std::size_t i = 0; i < N; ++i) result[i] = static_cast<Real>(vector[i] / length);
-    return result;
+    return unit_of<Real>(vector);
   }
 
  private:

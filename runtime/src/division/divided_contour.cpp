@@ -15,6 +15,7 @@
 #include "base/workers.hpp"
 #include "complex/crossings.hpp"
 #include "complex/edge_alpha.hpp"
+#include "complex/point_gradients.hpp"
 #include "division/cell_crossings.hpp"
 #include "kernel/contour_output.hpp"
 #include "kernel/placement.hpp"
@@ -346,7 +347,7 @@ class DividedExtraction {
       contour.normals.resize(size.vertices);
     }
     for_each_block(
-        blocks_.size(), 1, options_.work.threads, part_of(options_.work.progress, 0.5, 1.0), [] { return Scratch(); },
+        blocks_.size(), 1, options_.work.threads, part_of(options_.work.progress, 0.5, 0.9), [] { return Scratch(); },
         [&](std::size_t b, std::size_t, std::size_t, Scratch& scratch) {
           Block& block = blocks_[b];
           std::size_t vertex = block.first_vertex;
@@ -359,7 +360,8 @@ class DividedExtraction {
         });
     std::vector<Index> touching;
     for (const Block& block : blocks_) touching.insert(touching.end(), block.touching.begin(), block.touching.end());
-    if (!touching.empty()) split_nonmanifold(contour, touching, kMaxVertices, options_.work.threads);
+    split_nonmanifold(contour, touching, kMaxVertices,
+                      {options_.work.threads, part_of(options_.work.progress, 0.9, 1.0)});
   }
 
   using Vertex = typename Contour<N, Real>::Vertex;
@@ -390,12 +392,28 @@ class DividedExtraction {
       const std::array<double, N> in_cell = point_on_edge<double, N>(x, y, alpha);
       contour.vertices[next] = vertex_between(p, q, in_cell, at, place, placement);
       if (placement.normals() != nullptr)
-        contour.normals[next] =
-            placement.normals()->template in_cell<CellFrame<N, (1u << N) - 1>>(in_gradients, in_cell);
+        contour.normals[next] = normal_between(p, q, alpha, in_gradients, *placement.normals());
       if (block.cells[c].is_near && is_beside_missing(at, crossing)) block.touching.push_back(static_cast<Index>(next));
       ++next;
     });
     return next;
+  }
+  /// The normal between two points of a cell, from the gradients at these: other corners may be missing. `at`: the
+  /// cell's first sample among the gradients.
+  static Vertex normal_between(const CellPoint& first, const CellPoint& second, double alpha, const Sample& at,
+                               const NormalWriter<N, Real>& normals) {
+    std::array<double, N> gradient{};
+    const auto add = [&](const CellPoint& point, double share) {
+      if (share == 0.0) return;
+      const std::vector<unsigned> corners = corner_masks(point.face);
+      for (const unsigned corner : corners) {
+        const std::array<double, N> there = normals.in_world_at(corner_at(at, corner));
+        for (int a = 0; a < N; ++a) gradient[a] += share / static_cast<double>(corners.size()) * there[a];
+      }
+    };
+    add(first, 1.0 - alpha);
+    add(second, alpha);
+    return unit_of<Real>(gradient);
   }
   /// The vertex between two points of the cell at `at`, at a place in the cell.
   Vertex vertex_between(const CellPoint& first, const CellPoint& second, const std::array<double, N>& in_cell,

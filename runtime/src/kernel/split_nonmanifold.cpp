@@ -16,6 +16,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/periods.hpp"
+#include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "kernel/contour_output.hpp"
 #include "tile/link_balls.hpp"
@@ -82,8 +83,8 @@ template <int N, class Real>
 class NonmanifoldSplitter {
  public:
   NonmanifoldSplitter(Contour<N, Real>& contour, std::vector<Index> candidates, std::uint64_t max_vertices,
-                      unsigned threads)
-      : contour_(contour), candidates_(std::move(candidates)), max_vertices_(max_vertices), threads_(threads) {}
+                      const WorkOptions& work)
+      : contour_(contour), candidates_(std::move(candidates)), max_vertices_(max_vertices), work_(work) {}
 
   void run() {
     gather_stars();
@@ -111,6 +112,7 @@ class NonmanifoldSplitter {
         gather_stars();
       }
     }
+    tell(work_.progress, 1.0);
   }
 
  private:
@@ -159,7 +161,16 @@ class NonmanifoldSplitter {
     return {members_.data() + first_[c], first_[c + 1] - first_[c]};
   }
 
+  /// Reports one round more.
+  void next_round() {
+    done_ = after_round();
+    tell(work_.progress, done_);
+  }
+  [[nodiscard]] double after_round() const noexcept { return done_ + (1.0 - done_) / 8; }
+
+  /// Begins a round: gathers the simplices around the candidates.
   void gather_stars() {
+    next_round();
     std::vector<Index> place(contour_.vertices.size(), kNone);
     for (std::size_t c = 0; c < candidates_.size(); ++c) place[candidates_[c]] = static_cast<Index>(c);
     first_.assign(candidates_.size() + 2, 0);  // counted two entries ahead: filling then leaves the right offsets
@@ -528,9 +539,10 @@ class NonmanifoldSplitter {
   /// the next round, ascending.
   std::vector<Index> separate_balls() {
     std::vector<std::vector<std::uint32_t>> balls(candidates_.size());
-    for_each_block(candidates_.size(), 16, threads_, nullptr, [&](std::size_t, std::size_t from, std::size_t to) {
-      for (std::size_t c = from; c < to; ++c) balls[c] = balls_of_link(link_of(candidates_[c], star(c)));
-    });
+    for_each_block(candidates_.size(), 16, work_.threads, part_of(work_.progress, done_, after_round()),
+                   [&](std::size_t, std::size_t from, std::size_t to) {
+                     for (std::size_t c = from; c < to; ++c) balls[c] = balls_of_link(link_of(candidates_[c], star(c)));
+                   });
     std::vector<bool> changed(contour_.simplices.size(), false);
     std::vector<Index> next;
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
@@ -556,7 +568,8 @@ class NonmanifoldSplitter {
   Contour<N, Real>& contour_;
   std::vector<Index> candidates_;
   std::uint64_t max_vertices_;
-  unsigned threads_;
+  const WorkOptions& work_;
+  double done_ = 0;                 ///< reported progress
   std::vector<std::size_t> first_;  ///< star of candidate c: members_[first_[c]] ... members_[first_[c + 1] - 1]
   std::vector<Index> members_;
   std::vector<Face> faces_;
@@ -571,14 +584,15 @@ class NonmanifoldSplitter {
 
 template <int N, class Real>
 void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices,
-                       unsigned threads) {
+                       const WorkOptions& work) {
   // In 2D an edge of the grid has only two tiles, so contours cannot touch themselves.
   if constexpr (N > 2)
-    if (!candidates.empty()) NonmanifoldSplitter<N, Real>(contour, candidates, max_vertices, threads).run();
+    if (!candidates.empty()) NonmanifoldSplitter<N, Real>(contour, candidates, max_vertices, work).run();
 }
 
-#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real) \
-  template void split_nonmanifold<N, Real>(Contour<N, Real>&, const std::vector<Index>&, std::uint64_t, unsigned);
+#define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                                                         \
+  template void split_nonmanifold<N, Real>(Contour<N, Real>&, const std::vector<Index>&, std::uint64_t, \
+                                           const WorkOptions&);
 #include "base/instantiate.hpp"
 
 }  // namespace tegl::detail

@@ -21,6 +21,7 @@
 
 #include "kernel/extract_count.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 
@@ -65,10 +66,11 @@ class NonmanifoldCollector : public NonmanifoldCandidates {
 
 /// Makes the contour a manifold around the candidates. New vertices and simplices are appended in an order that depends
 /// on the contour only. Throws TooLarge beyond `max_vertices`. O(S + c log c), with S simplices in all and c simplices
-/// around candidates; in 5D for each round of copies, and the links of the candidates are tested. `threads`: for the
-/// tests in 5D; the result does not depend on them.
+/// around candidates; in 5D for each round of copies, and the links of the candidates are tested. `work`: threads for
+/// these tests, on which the result does not depend; progress after each round, which approaches 1, as the number of
+/// rounds is not known. Errors: Cancelled; the contour is then in an unknown state.
 template <int N, class Real>
 void split_nonmanifold(Contour<N, Real>& contour, const std::vector<Index>& candidates, std::uint64_t max_vertices,
-                       unsigned threads = 1);
+                       const WorkOptions& work = {1, {}});
 
 }  // namespace tegl::detail

@@ -17,6 +17,7 @@
 #include <fmt/format.h>
 
 #include "ambiguity/tile_choices.hpp"
+#include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
 #include "kernel/extract_progress.hpp"
@@ -568,9 +569,9 @@ class TileExtraction final : public SteppedExtraction<N, Real> {
   bool any_missing_ = false;
   std::mutex touching_mutex_;
   std::vector<Index> touching_;  ///< see `touching`
-  std::size_t next_ = 0;      ///< next layer to process
-  std::size_t prepared_ = 0;  ///< number of layers prepared
-  std::size_t reach_ = 0;     ///< additional layers that a custom estimator reads
+  std::size_t next_ = 0;         ///< next layer to process
+  std::size_t prepared_ = 0;     ///< number of layers prepared
+  std::size_t reach_ = 0;        ///< additional layers that a custom estimator reads
   std::vector<std::vector<Cell>> by_row_;
   std::optional<FaceEstimator<N>> estimator_;  ///< if ambiguities are resolved from the data
   std::optional<TileChoices<N>> choices_;
@@ -642,7 +643,9 @@ Extraction<N, Real> extract_tiles(SampleSource<N>& source, const Grid<N>& grid, 
   result.stats = built.stats;
   if (!built.touching.empty()) {
     Stopwatch watch;
-    split_nonmanifold(result.contour, built.touching, plan.max_vertices, options.work.threads);
+    // The extraction has reported 1: only cancelling is new.
+    split_nonmanifold(result.contour, built.touching, plan.max_vertices,
+                      {options.work.threads, part_of(options.work.progress, 1.0, 1.0)});
     watch.add_to(result.stats.generate_seconds);
   }
   return result;

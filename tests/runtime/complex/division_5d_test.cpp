@@ -461,14 +461,15 @@ TEST(Division5d, NormalsAcrossTheSeamAreThoseOfThePeriodicImage) {
   // The image moved by one sample has the normals of the moved contour.
   ExtractOptions options;
   options.normals = Normals::differences;
-  for (const Division division : {Division::kuhn}) {
-    auto image = noise<5>(4, 51);
+  for (const Division division : kDivisions) {
+    const std::size_t samples = division == Division::kuhn ? 4 : 3;
+    auto image = noise<5>(samples, 51);
     std::mt19937 random(52);
     for (double& value : image.values) value = std::uniform_real_distribution<double>()(random);
     auto moved = image;
     std::size_t i = 0;
     detail::for_each_sample<5>(image.grid.sizes(), [&](std::array<std::size_t, 5> at) {
-      for (std::size_t& each : at) each = (each + 1) % 4;
+      for (std::size_t& each : at) each = (each + 1) % samples;
       moved.values[i++] = image.view()(at);
     });
     const auto periods = all_periodic<5>(image.grid);
@@ -491,14 +492,18 @@ bool same_bytes(const Contour<5, Real>& first, const Contour<5, Real>& second) {
 }
 
 TEST(Division5d, AnyNumberOfThreadsGivesTheSameBytes) {
-  const auto image = noise<5>(5, 9);
-  for (const bool close : {false, true}) {
-    ExtractOptions options;
-    options.close = close;
-    options.work.threads = 1;
-    const auto one = extract_divided(image.view(), Division::kuhn, 0.3, options);
-    options.work.threads = 5;
-    EXPECT_TRUE(same_bytes(extract_divided(image.view(), Division::kuhn, 0.3, options), one));
+  for (const Division division : kDivisions) {
+    auto image = noise<5>(division == Division::kuhn ? 5 : 4, 9);
+    for (double& value : image.values) value = 1.0 - value;  // high at the border
+    for (const bool close : {false, true}) {
+      ExtractOptions options;
+      options.close = close;
+      options.work.threads = 1;
+      const auto one = extract_divided(image.view(), division, 0.7, options);
+      EXPECT_GT(one.simplices.size(), 1000u);
+      options.work.threads = 5;
+      EXPECT_TRUE(same_bytes(extract_divided(image.view(), division, 0.7, options), one));
+    }
   }
   const auto holes = with_missing<5>(4, 0.01, 9);
   const auto periods = all_periodic<5>(holes.grid, 2);
@@ -507,6 +512,32 @@ TEST(Division5d, AnyNumberOfThreadsGivesTheSameBytes) {
   const auto one = extract_divided(holes.view(), Division::kuhn, 0.5, options, periods);
   options.work.threads = 5;
   EXPECT_TRUE(same_bytes(extract_divided(holes.view(), Division::kuhn, 0.5, options, periods), one));
+}
+
+TEST(Division5d, MakingAManifoldReportsProgressAndCanBeCancelled) {
+  const auto image = with_missing<5>(4, 0.03, 31);
+  const auto expect_reports = [&](const auto& make, double from) {
+    // the reports after the contour, until the last one
+    std::vector<double> reports;
+    ExtractOptions options;
+    options.work.threads = 1;
+    options.work.progress = [&](double fraction) {
+      reports.push_back(fraction);
+      return true;
+    };
+    const auto contour = make(options);
+    EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
+    EXPECT_EQ(reports.back(), 1.0);
+    const auto late = std::count_if(reports.begin(), reports.end(), [&](double each) { return each >= from; });
+    EXPECT_GT(late, 5);
+    // cancelled after three of these
+    std::size_t seen = 0;
+    options.work.progress = [&](double fraction) { return fraction < from || ++seen < 4; };
+    expect_error(ErrorCode::Cancelled, "cancelled", [&] { (void)make(options); });
+  };
+  expect_reports(
+      [&](const ExtractOptions& options) { return extract_divided(image.view(), Division::kuhn, 0.5, options); }, 0.9);
+  expect_reports([&](const ExtractOptions& options) { return extract(image.view(), 0.5, options); }, 1.0);
 }
 
 TEST(Division5d, MirroredGridsHaveTheSameSide) {
