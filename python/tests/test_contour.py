@@ -210,6 +210,14 @@ def test_masked_samples_are_missing():
                 tegl.contour(np.where(mask, whole, np.nan).astype(np.float32), 10))
 
 
+def test_missing_samples_in_5d_leave_cells_out():
+    array = noise((3, 3, 4, 4, 4), 1)
+    whole = tegl.contour(array, 0.1)
+    array[1, 1, 2, 1, 1] = np.nan
+    contour = tegl.contour(array, 0.1)
+    assert contour.check().is_manifold and 0 < len(contour.simplices) < len(whole.simplices)
+
+
 def test_the_options_reach_the_library():
     array = np.round(noise((7, 8, 9), 11) * 2)
     low = tegl.contour(array, 0.0)
