@@ -525,7 +525,7 @@ TEST(Division5d, MakingAManifoldReportsProgressAndCanBeCancelled) {
       reports.push_back(fraction);
       return true;
     };
-    const auto contour = make(options);
+    (void)make(options);
     EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
     EXPECT_EQ(reports.back(), 1.0);
     const auto late = std::count_if(reports.begin(), reports.end(), [&](double each) { return each >= from; });

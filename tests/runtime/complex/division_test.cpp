@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -274,6 +275,7 @@ void expect_gradients_of_products() {
   auto image = sampled<N>(5, field);
   for (const std::array<std::size_t, 5>& missing :
        {std::array<std::size_t, 5>{2, 2, 2, 2, 2}, {0, 2, 4, 2, 0}, {4, 4, 2, 0, 2}, {2, 0, 0, 2, 4}}) {
+    if (N == 2 && missing[0] != missing[1]) continue;  // two of them would leave a sample without neighbours
     std::size_t number = 0;
     for (int a = N - 1; a >= 0; --a) number = 5 * number + missing[static_cast<std::size_t>(a)];
     image.values[number] = std::numeric_limits<double>::quiet_NaN();
@@ -323,13 +325,13 @@ void expect_gradients_across_the_seam() {
       options.normals = kind;
       options.kernel = central_kernel<N>();
       std::size_t across = 0;
-      expect_normals<N>(extract_divided<double>(image.view(), division, 2.6, options, periods),
+      expect_normals<N>(extract_divided<double>(image.view(), division, 1.3, options, periods),
                         [&](const std::array<double, N>& x) {
                           const auto at = [&](double sample) {
                             const auto i = static_cast<std::size_t>(sample);
                             return 0.5 * (kAlong[(i + 1) % 4] - kAlong[(i + 3) % 4]);
                           };
-                          const double from = std::floor(x[0]);
+                          const double from = std::max(0.0, std::floor(x[0]));
                           across += x[0] > 3.0 ? 1 : 0;
                           std::array<double, N> gradient{};
                           gradient[0] = at(from) + (x[0] - from) * (at(from + 1.0) - at(from));
