@@ -116,12 +116,12 @@ HWY_INLINE void points_along(const EdgePoints<N, Real>& all) {
   constexpr std::size_t kLanes = hn::MaxLanes(AllLanes());
   // Of a row, which has many edges, local, because stores of vectors may change any memory.
   const std::conditional_t<kInOneRow, EdgePoints<N, Real>, const EdgePoints<N, Real>&> edges = all;
-  const auto some = [&](auto d, std::size_t i) HWY_ATTR { write_some<Axis, kInOneRow>(d, edges, i); };
   std::size_t i = 0;
-  for (; i + kLanes <= edges.count; i += kLanes) some(AllLanes(), i);
+  for (; i + kLanes <= edges.count; i += kLanes) write_some<Axis, kInOneRow>(AllLanes(), edges, i);
   if (i == edges.count) return;
-  if (edges.count >= kLanes) return some(AllLanes(), edges.count - kLanes);  // some twice
-  for (; i < edges.count; ++i) some(OneLane(), i);
+  if (edges.count >= kLanes)  // some twice
+    return write_some<Axis, kInOneRow>(AllLanes(), edges, edges.count - kLanes);
+  for (; i < edges.count; ++i) write_some<Axis, kInOneRow>(OneLane(), edges, i);
 }
 
 template <bool kInOneRow, int N, class Real>
