@@ -186,7 +186,7 @@ class FacetLevel:
 
 
 class Facets:
-    """A contour as facets of all dimensions, without triangulation: `facets[k]` are those of dimension k.
+    """A contour as facets of all dimensions, without triangulation: `facets[k]` has the facets of dimension k.
 
     ::
 

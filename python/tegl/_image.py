@@ -213,7 +213,7 @@ def contour_facets(array, level: float, *, spacing=None, origin=None, coords=Non
     """The contour {value = level} of an array of 2 to 4 axes as facets: points, segments, polygons and polyhedra with their
     incidences, as the grid cuts the contour.
 
-    Arguments are those of `tegl.contour`; normals are from the gradient. `tegl.contour` makes simplices of these facets:
+    Arguments as for `tegl.contour`; normals are from the gradient. `tegl.contour` makes simplices of these facets:
     both have the same points, components and Euler characteristic. Facets of meshes: `tegl.contour_mesh_facets`.
     """
     _facets.gradient_only(normals)

@@ -91,10 +91,10 @@ def contour_mesh_facets(points, cells=None, values=None, level: float | None = N
                         ambiguity: _kinds.Ambiguity = "low", direction: _kinds.Direction = "descent", close: bool = False,
                         epsilon: float = 0.0, normals: bool | typing.Literal["gradient"] = False, dtype=np.float32,
                         allow_empty: bool = False, threads: int = 0, progress: Progress | None = None) -> Facets:
-    """The contour {value = level} of a mesh as facets: segments in cells of two dimensions, polygons in those of three,
-    polyhedra in those of four, among them the prisms over the cells of a mesh over time.
+    """The contour {value = level} of a mesh as facets: segments in cells of two dimensions, polygons in cells of three,
+    polyhedra in cells of four, among them the prisms over the cells of a mesh over time.
 
-    Arguments are those of `tegl.contour_mesh`. `facets[k].cells` has the cell of each facet. Cells are numbered by type, in
+    Arguments as for `tegl.contour_mesh`. `facets[k].cells` has the cell of each facet. Cells are numbered by type, in
     the order of the library's reference below, and within a type in the order of the input.
     """
     _facets.gradient_only(normals)

@@ -57,7 +57,7 @@ def require_lists(facets):
         assert len(below.coboundary) == len(level.boundary)
         down = sorted(zip(level.boundary, row_of(level.offsets), level.signs))
         assert down == list(zip(row_of(below.up_offsets), below.coboundary, below.up_signs))
-        # points are those of the boundary
+        # the points of the boundary
         for f, entries in enumerate(rows(level.offsets, level.boundary)):
             of_boundary = {p for g in entries for p in below.points[below.point_offsets[g]:below.point_offsets[g + 1]]}
             assert set(points[f]) == of_boundary
@@ -126,7 +126,7 @@ def test_the_highest_facets_face_the_side_of_the_contour(direction, time_axis):
                 around = sum(np.cross(x[p], x[q]) for p, q in zip(points, np.roll(points, -1)))
                 normal = around @ x[points].mean(axis=0) * sign
             assert normal > 0
-        # as the simplices: their sum of cross products, or of directions, is that of the facets
+        # as the simplices: the facets have the same sum of cross products, or of directions
         simplices = contour.vertices[contour.simplices] - 4.1
         if ndim == 3:
             volume = sum(np.cross(x[p[0]], x[p[i]]) @ x[p[i + 1]]
@@ -185,7 +185,7 @@ def test_facets_of_periodic_lattices_are_closed(lattice, sizes):
     report = require_lists(facets)
     assert report.is_closed and report.euler == contour.check().euler == -8
     assert len(facets.vertices) == len(contour.vertices) and len(facets.periods) == 3
-    # the step between layers is that of the regular lattice
+    # layers are as far apart as in the regular lattice
     assert facets.periods.max() == pytest.approx(np.abs(contour.periods).max())
     assert facets.cell_count == 3 * array.size * (1 if lattice == "fcc" else 2)
     assert facets[2].samples is None and facets[2].axes is None
