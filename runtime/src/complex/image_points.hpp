@@ -52,6 +52,17 @@ std::size_t number_of(const Grid<N>& grid, const std::array<std::size_t, N>& ind
   return at;
 }
 
+/// The index of number `number`, axis 0 fastest.
+template <int N>
+std::array<std::size_t, N> index_of(std::size_t number, const std::array<std::size_t, N>& sizes) noexcept {
+  std::array<std::size_t, N> index;
+  for (int a = 0; a < N; ++a) {
+    index[a] = number % sizes[a];
+    number /= sizes[a];
+  }
+  return index;
+}
+
 /// The place in the world of axis coordinates.
 template <int N>
 std::array<double, N> place_in_world(const Grid<N>& grid, const std::array<double, N>& x) {

@@ -228,17 +228,6 @@ DividedImage<N> divided(const Grid<N>& grid, std::vector<double> values, Divisio
   return {std::move(divider).complex(), std::move(centres)};
 }
 
-/// The index of a sample by its number.
-template <int N>
-std::array<std::size_t, N> index_of(std::size_t number, const std::array<std::size_t, N>& sizes) {
-  std::array<std::size_t, N> index;
-  for (int a = 0; a < N; ++a) {
-    index[a] = number % sizes[a];
-    number /= sizes[a];
-  }
-  return index;
-}
-
 /// The cells of an image with periodic axes: those of a longer one, of which samples and centres of the last layer are
 /// those of the first.
 template <Value T, int N>
@@ -264,7 +253,7 @@ DividedImage<N> divided_periodic(const Image<T, N>& image, Division division, do
   std::vector<std::array<double, N>> points(detail::count_samples(grid, "a divided image"));
   std::vector<double> of_points(points.size());
   for (std::size_t p = 0; p < number.size(); ++p) {
-    const auto index = index_of<N>(p, longer_sizes);
+    const auto index = detail::index_of<N>(p, longer_sizes);
     if (index != wrapped(index)) continue;
     points[number[p]] = of_longer.complex.points()[p];
     of_points[number[p]] = of_longer.complex.values()[p];
@@ -404,12 +393,12 @@ Extraction<N, Real> extract_stored(const Image<T, N>& image, Division division, 
     return at_samples.in_world_at(index);
   };
   around.gradient = [&](Index p) {
-    if (p < samples) return at(index_of<N>(p, sizes));
+    if (p < samples) return at(detail::index_of<N>(p, sizes));
     const auto& [axes, lowest] = made.centres[p - samples];
     const std::vector<unsigned> corners = detail::corner_masks({0, axes});
     std::array<double, N> mean{};
     for (const unsigned corner : corners) {
-      auto index = index_of<N>(lowest, sizes);
+      auto index = detail::index_of<N>(lowest, sizes);
       for (int a = 0; a < N; ++a) index[a] += corner >> a & 1u;
       const std::array<double, N> gradient = at(index);
       for (int a = 0; a < N; ++a) mean[a] += gradient[a] / static_cast<double>(corners.size());

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/workers.hpp"
+#include "complex/image_points.hpp"
 
 namespace tegl::detail {
 namespace {
@@ -55,7 +56,7 @@ MissingCorners<N>::MissingCorners(const Index& cells, unsigned periodic, bool wh
   of_cells_.resize(count);
   for_each_block(count, 4096, work.threads, nullptr, [&](std::size_t, std::size_t from, std::size_t to) {
     for (std::size_t c = from; c < to; ++c) {
-      const Index cell = cell_at(c);
+      const Index cell = index_of<N>(c, cells_);
       unsigned any = 0;
       std::uint32_t missing = 0;
       for (unsigned v = 0; v < 1u << N; ++v) {
@@ -76,7 +77,7 @@ void MissingCorners<N>::find_near(const WorkOptions& work) {
   near_.resize(of_cells_.size());
   for_each_block(near_.size(), 4096, work.threads, nullptr, [&](std::size_t, std::size_t from, std::size_t to) {
     for (std::size_t c = from; c < to; ++c) {
-      const Index cell = cell_at(c);
+      const Index cell = index_of<N>(c, cells_);
       std::array<std::int8_t, N> steps;
       steps.fill(-1);
       for (int a = 0; a < N && near_[c] == 0;) {
@@ -86,16 +87,6 @@ void MissingCorners<N>::find_near(const WorkOptions& work) {
       }
     }
   });
-}
-
-template <int N>
-typename MissingCorners<N>::Index MissingCorners<N>::cell_at(std::size_t number) const noexcept {
-  Index cell;
-  for (int a = 0; a < N; ++a) {
-    cell[a] = number % cells_[a];
-    number /= cells_[a];
-  }
-  return cell;
 }
 
 template class MissingCorners<2>;

@@ -56,7 +56,6 @@ class MissingCorners {
 
  private:
   void find_near(const WorkOptions& work);
-  [[nodiscard]] Index cell_at(std::size_t number) const noexcept;
 
   Index cells_;
   unsigned periodic_;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "complex/contour_numbers.hpp"
+#include "complex/image_points.hpp"
 #include "complex/point_gradients.hpp"
 #include "image/row_source.hpp"
 #include "lattice/lattice_gradients.hpp"
@@ -99,10 +100,7 @@ class CellParts {
     if (options.normals != Normals::none) {
       gradients.emplace(source, at_start, lattice_, options.direction, periodic, contour_periods_);
       around.gradient = [&, sizes = window.grid().sizes()](Index p) {
-        std::size_t at = in_window(made.layers, p);
-        std::array<std::size_t, N> index;
-        for (int a = 0; a < N; at /= sizes[a], ++a) index[a] = at % sizes[a];
-        return gradients->at(index);
+        return gradients->at(index_of<N>(in_window(made.layers, p), sizes));
       };
     }
     const auto [contour, more] = extract_in<Real>(made.complex, isovalue_, options, around);

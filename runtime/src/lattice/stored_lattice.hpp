@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "complex/contour_numbers.hpp"
+#include "complex/image_points.hpp"
 #include "complex/point_gradients.hpp"
 #include "image/row_source.hpp"
 #include "lattice/lattice_cells.hpp"
@@ -55,11 +56,7 @@ class StoredLattice {
     if (periodic_ != 0) around_.periods = world_periods<N>(image.grid(), periods);
     if (options.normals == Normals::none) return;
     gradients_.emplace(source_, image.grid(), lattice, options.direction, periodic_, around_.periods);
-    around_.gradient = [this, sizes = image.grid().sizes()](Index p) {
-      std::array<std::size_t, N> index;
-      for (int a = 0; a < N; p = static_cast<Index>(p / sizes[a]), ++a) index[a] = p % sizes[a];
-      return gradients_->at(index);
-    };
+    around_.gradient = [this, sizes = image.grid().sizes()](Index p) { return gradients_->at(index_of<N>(p, sizes)); };
   }
   // around_ and gradients_ refer to other members
   StoredLattice(const StoredLattice&) = delete;
