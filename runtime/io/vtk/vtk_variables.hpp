@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +30,12 @@ struct VtkVariable {
 /// The arrays of the first piece: of points, then of cells if their names differ. Arrays of numbers of points
 /// and cells, and vtkGhostType, are left out.
 std::vector<VtkVariable> variables_of(const VtkFile& file);
+
+/// The arrays of the first piece whose name occurs again among the values of points, or of cells: readers take the
+/// first. Each once.
+std::vector<VtkVariable> repeated_variables(const VtkFile& file);
+/// A remark on one of them.
+std::string remark_on_repeated(const VtkVariable& variable, const std::filesystem::path& path);
 
 /// The names of those with one component.
 std::vector<std::string> scalar_names(const std::vector<VtkVariable>& all);
