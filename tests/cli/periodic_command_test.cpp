@@ -345,7 +345,7 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   // two layers of d4, which are no cells
   const std::string flat =
       write("flat.nrrd", nrrd_bytes(sample({4, 4, 4, 2}, [](const auto& x) { return static_cast<double>(x[3]); })));
-  for (const std::vector<std::string>& command : {std::vector<std::string>{"contour", flat, "-o", output},
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"contour", flat, "-o", path("d4.vtkhdf")},
                                                   {"measure", flat},
                                                   {"contour", flat, "--facets", "-o", path("facets.vtu")}}) {
     std::vector<std::string> arguments = command;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <fmt/ranges.h>
+#include <Eigen/LU>
 
 #include "base/common.hpp"
 #include "base/sample_reader.hpp"

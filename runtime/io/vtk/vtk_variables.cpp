@@ -81,7 +81,7 @@ VtkVariable choose_variable(const VtkFile& file, const std::vector<VtkVariable>&
     const auto first = std::find_if(all.begin(), all.end(), is_scalar);
     if (first != all.end() && std::count_if(all.begin(), all.end(), is_scalar) == 1) return *first;
     if (all.empty())
-      fail(ErrorCode::VariableNotFound, file.path(), "has no arrays; expected one with values of points or cells");
+      fail(ErrorCode::UnsupportedData, file.path(), "has no arrays; expected one with values of points or cells");
     fail(ErrorCode::VariableNotFound, file.path(), "has the arrays {}; expected one with one component, or a choice{}",
          listed(all), first == all.end() ? ", such as NAME:0 or NAME:magnitude" : "");
   }

@@ -41,7 +41,7 @@ std::string remark_on_repeated(const VtkVariable& variable, const std::filesyste
 std::vector<std::string> scalar_names(const std::vector<VtkVariable>& all);
 
 /// The variable named `name`, which may be NAME:K (component K of a vector) or NAME:magnitude; if it is empty, the only
-/// scalar. Errors: VariableNotFound, with the names that there are.
+/// scalar. Errors: VariableNotFound, with the names that there are; UnsupportedData if there are none.
 VtkVariable choose_variable(const VtkFile& file, const std::vector<VtkVariable>& all, const std::string& name);
 
 /// The chosen part of values with all components; `values` itself for a scalar.
