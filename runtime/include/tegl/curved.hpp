@@ -34,6 +34,15 @@ namespace tegl {
 [[nodiscard]] std::vector<CurvedAxis> by_points(std::vector<CurvedAxis> curved, std::span<const CoordinateArray> arrays,
                                                 std::span<const std::size_t> sizes, unsigned threads = 0);
 
+/// Continues longitudes in degrees across 180, in place: each differs from a known neighbour by 180 at most, by
+/// multiples of 360. `sizes`: of the grid, fastest axis first. NaN and numbers beyond -720 to 720 are unknown, and
+/// remain. The first known one remains, too. The longitude of a row's sample follows that of its predecessor; the first
+/// sample of a row, or the first behind unknown ones, follows its neighbour in another row. Parts of the grid without
+/// neighbours in common follow the nearest sample of another part, by steps on the grid. For CurvedAxis::values, as
+/// files are read. Errors: InvalidArgument for another number of longitudes than the sizes'. O(longitudes) time; if
+/// there are such parts, more time and 30 bytes per longitude.
+void continue_longitudes(std::span<double> longitudes, std::span<const std::size_t> sizes);
+
 /// A periodic axis of a curved grid: cells across the seam connect the last samples along it to the first ones.
 template <int N>
 struct CurvedSeam {

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Coordinates in arrays of two dimensions that are no places, or that no convention names.
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "images/netcdf_files.hpp"
 #include "io_support.hpp"
+#include "tegl/curved.hpp"
 
 namespace tegl::test {
 namespace {
@@ -162,6 +168,116 @@ TEST(NetCdfCoordinates, OfUnknownMeaningAreARemark) {
   plane.has_axes = true;
   plane.write(dir / "b.nc");
   EXPECT_THAT(read_image(dir / "b.nc").info.remarks, testing::IsEmpty());
+}
+
+// ---- longitudes across 180 degrees ----------------------------------------------------------------------------------
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Longitudes of 36 x 6 samples from 100 eastwards, in -180 to 180, that are unknown on land.
+struct Globe {
+  static constexpr std::size_t kColumns = 36, kRows = 6;
+  using Land = std::function<bool(std::size_t row, std::size_t column)>;
+
+  explicit Globe(const Land& is_land) {
+    for (std::size_t s = 0; s < kColumns * kRows; ++s) {
+      const bool is_unknown = is_land(s / kColumns, s % kColumns);
+      const double x = 100.0 + 10.0 * static_cast<double>(s % kColumns);
+      continued.push_back(is_unknown ? kUnknown : x);
+      stored.push_back(is_unknown ? kUnknown : x >= 180 ? x - 360 : x);
+    }
+  }
+
+  std::vector<double> stored, continued;
+};
+
+/// Expects the longitudes to differ from the right ones by the same multiple of 360 everywhere: 0 at the first one.
+void expect_continued(const std::vector<double>& longitudes, const Globe& globe, std::string_view where) {
+  ASSERT_EQ(longitudes.size(), globe.continued.size());
+  double turn = kUnknown;
+  for (std::size_t s = 0; s < longitudes.size(); ++s) {
+    ASSERT_EQ(std::isnan(longitudes[s]), std::isnan(globe.stored[s])) << where << ", sample " << s;
+    if (std::isnan(longitudes[s])) continue;
+    if (std::isnan(turn)) turn = globe.stored[s] - globe.continued[s];
+    ASSERT_EQ(longitudes[s], globe.continued[s] + turn) << where << ", sample " << s;
+  }
+}
+
+const std::vector<std::pair<std::string, Globe::Land>>& lands() {
+  static const std::vector<std::pair<std::string, Globe::Land>> all = {
+      {"none", [](auto, auto) { return false; }},
+      {"the first sample", [](auto row, auto column) { return row == 0 && column == 0; }},
+      {"the start of a row", [](auto row, auto column) { return row == 1 && column == 0; }},
+      {"the first column", [](auto, auto column) { return column == 0; }},
+      {"most of a row", [](auto row, auto column) { return row == 2 && column >= 3 && column < 28; }},
+      {"most of two rows", [](auto row, auto column) { return row / 2 == 1 && column >= 3 && column < 28; }},
+      {"the end of a row", [](auto row, auto column) { return row == 3 && column >= 30; }},
+      {"a row", [](auto row, auto) { return row == 2; }},
+      {"the first row", [](auto row, auto) { return row == 0; }},
+      {"a corner", [](auto row, auto column) { return row < 2 && column < 12 - 2 * row; }},
+      {"a band of columns", [](auto, auto column) { return column >= 20 && column < 25; }},
+      {"all but a lake and the last columns",
+       [](auto row, auto column) { return column < 20 && !(row >= 3 && column >= 8 && column < 10); }},
+      {"stairs", [](auto row, auto column) { return column > 5 * row && column < 36 - 5 * row && row % 2 == 0; }},
+      {"every second sample", [](auto row, auto column) { return (row + column) % 2 == 0; }}};
+  return all;
+}
+
+TEST(NetCdfCoordinates, LongitudesAreContinuedAroundLand) {
+  for (const auto& [where, is_land] : lands()) {
+    const Globe globe(is_land);
+    std::vector<double> longitudes = globe.stored;
+    continue_longitudes(longitudes, std::array<std::size_t, 2>{Globe::kColumns, Globe::kRows});
+    expect_continued(longitudes, globe, where);
+    const std::vector<double> once = longitudes;
+    continue_longitudes(longitudes, std::array<std::size_t, 4>{1, Globe::kColumns, 1, Globe::kRows});
+    for (std::size_t s = 0; s < once.size(); ++s)
+      if (!std::isnan(once[s])) EXPECT_EQ(longitudes[s], once[s]) << where << ": a second call changes nothing";
+    // two rows of each of three layers
+    longitudes = globe.stored;
+    continue_longitudes(longitudes, std::array<std::size_t, 3>{Globe::kColumns, 2, 3});
+    expect_continued(longitudes, globe, where);
+  }
+}
+
+TEST(NetCdfCoordinates, LongitudesThatAreNoPlacesRemain) {
+  std::vector<double> longitudes = {1e20, 170, -180, -9999, std::numeric_limits<double>::infinity(), 175, -175, -170};
+  continue_longitudes(longitudes, std::array<std::size_t, 2>{4, 2});
+  EXPECT_EQ(longitudes,
+            (std::vector<double>{1e20, 170, 180, -9999, std::numeric_limits<double>::infinity(), 175, 185, 190}));
+  std::vector<double> unknown(8, kUnknown), none;
+  continue_longitudes(unknown, std::array<std::size_t, 2>{4, 2});
+  for (const double x : unknown) EXPECT_TRUE(std::isnan(x));
+  continue_longitudes(none, std::array<std::size_t, 2>{0, 2});
+  expect_error(ErrorCode::InvalidArgument, {"8 longitudes", "expected 6", "3 x 2"}, [&] {
+    continue_longitudes(longitudes, std::array<std::size_t, 2>{3, 2});
+  });
+}
+
+TEST(NetCdfCoordinates, LongitudesOfFilesAreContinuedAroundLand) {
+  const TempDir dir;
+  for (const auto& [where, is_land] : lands()) {
+    const Globe globe(is_land);
+    {
+      NcWriter file(dir / "a.nc");
+      const int y = file.dimension("row", Globe::kRows), x = file.dimension("column", Globe::kColumns);
+      const int lon = file.variable("lon", NC_DOUBLE, {y, x}), lat = file.variable("lat", NC_DOUBLE, {y, x});
+      const int v = file.variable("v", NC_FLOAT, {y, x});
+      file.text(lon, "units", "degrees_east");
+      file.text(lat, "units", "degrees_north");
+      file.text(v, "coordinates", "lon lat");
+      file.end();
+      std::vector<double> latitudes;
+      for (std::size_t s = 0; s < globe.stored.size(); ++s)
+        latitudes.push_back(std::isnan(globe.stored[s]) ? kUnknown : 10.0 * static_cast<double>(s / Globe::kColumns));
+      file.values(lon, globe.stored);
+      file.values(lat, latitudes);
+      file.values(v, counting<double>(globe.stored.size(), 0));
+    }
+    const ReadImageResult read = read_image(dir / "a.nc");
+    ASSERT_EQ(read.info.curved.size(), 2U);
+    expect_continued(read.info.curved[0].values, globe, where);
+  }
 }
 
 }  // namespace
