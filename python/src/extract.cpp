@@ -296,6 +296,10 @@ std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage
       });
 }
 
+void continue_longitudes_any(py::array_t<double, py::array::c_style>& values, const std::vector<std::size_t>& sizes) {
+  continue_longitudes({values.mutable_data(), static_cast<std::size_t>(values.size())}, sizes);
+}
+
 std::vector<int> longitude_axes_any(const AnyImage& image, const CurvedAxes& given) {
   const std::vector<CurvedAxis> curved = curved_axes(given);
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> std::vector<int> {
@@ -477,6 +481,9 @@ void bind_extract(py::module_& m) {
   m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("axes"), py::arg("periods"),
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_curved);
   m.def("longitude_axes", &longitude_axes_any, py::arg("image"), py::arg("curved"), doc::longitude_axes);
+  m.def("continue_longitudes", &continue_longitudes_any, py::arg("values").noconvert(), py::arg("sizes"),
+        doc::continue_longitudes);
+  m.def("is_longitude_unit", &is_longitude_unit, py::arg("unit"), doc::is_longitude_unit);
   m.def("find_folds", &find_folds_any, py::arg("image"), py::arg("curved"), py::arg("axes"), py::arg("periods"),
         doc::find_folds);
   m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("custom"),

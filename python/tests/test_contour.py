@@ -356,6 +356,25 @@ def test_periods_are_positive_and_finite(period):
             function(values, 0.5, periodic={0: period})
 
 
+def test_longitudes_have_a_period_of_360():
+    def contour(lon, periodic, of=tegl.contour, unit="degrees_east"):
+        values = np.cos(np.radians(lon - 3)) + np.zeros((5, 1))
+        return of(values, 0.5, coords=[np.arange(5.0), lon], axis_names=("lat", "lon"), axis_units=("", unit), periodic=periodic)
+
+    for lon in (np.arange(0, 360, 10.0), np.r_[0:180:10.0, 180:360:5.0], np.arange(0, 350, 10.0), np.arange(-120, 180, 120.0)):
+        for periodic in ("lon", "longitude", 1, ["lon"]):
+            assert contour(lon, periodic).periods.tolist() == [[0, 360]]
+        assert contour(lon, "lon", tegl.count) == contour(lon, {"lon": 360}, tegl.count)
+        assert contour(lon, {"lon": 500.0}).periods.tolist() == [[0, 500]]
+    assert contour(np.arange(0, 350, 10.0), "lon", unit="").periods.tolist() == [[0, 350]]
+    for of in (tegl.contour, tegl.count):
+        with pytest.raises(ValueError, match=r"the period of axis 1 \(lon\), of longitudes, is 360, and is not more than 360, the span"):
+            contour(np.arange(0, 361, 10.0), "lon", of)
+        with pytest.raises(ValueError, match=r"axis 1 \(lon\).* span 30, and the gap behind them is 330; expected less than 180, or a"):
+            contour(np.arange(120, 151, 10.0), "lon", of)
+    assert contour(np.arange(0, 151, 10.0), {"lon": 160.0}).periods.tolist() == [[0, 160]]
+
+
 @pytest.mark.filterwarnings("ignore:the curved grid is folded")  # across latitudes
 def test_longitudes_that_span_360_degrees_are_found():
     lon, lat = np.meshgrid(np.arange(0.0, 360.0, 10.0), np.arange(-40.0, 41.0, 10.0))

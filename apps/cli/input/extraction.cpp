@@ -363,14 +363,6 @@ struct NamedPeriod {
   std::optional<double> period;
 };
 
-/// Whether a unit is one of longitudes, as in `longitude_periods`.
-bool is_longitude_unit(const std::string& unit) {
-  Grid<2> around = Grid<2>::unit({4, 2});
-  around.axes[0] = Axis::uniform(4, 0.0, 90.0);
-  around.axes[0].unit = unit;
-  return longitude_periods(around)[0] != 0.0;
-}
-
 /// An axis as --periodic may name it.
 struct AxisNames {
   std::vector<std::string> names;  ///< its own, or its letter, and that of its curved coordinate
@@ -460,12 +452,9 @@ std::vector<int> axes_of_names(const Grid<N>& grid, const std::vector<CurvedAxis
 template <int N>
 AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names) {
   AxisPeriods<N> periods{};
-  const AxisPeriods<N> longitudes = longitude_periods(grid);
   for (const NamedPeriod& one : named_periods(names_of_axes(grid), names)) {
     const auto axis = static_cast<std::size_t>(one.axis);
-    periods[axis] = one.period                ? *one.period
-                    : longitudes[axis] != 0.0 ? longitudes[axis]
-                                              : sample_periods(grid, std::span(&one.axis, 1))[axis];
+    periods[axis] = one.period ? *one.period : default_periods(grid, std::span(&one.axis, 1))[axis];
   }
   return periods;
 }

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -54,12 +55,23 @@ struct CurvedSeam {
 template <int N>
 using CurvedSeams = std::type_identity_t<std::span<const CurvedSeam<N>>>;
 
+/// Whether a unit is one of longitudes: degrees_east, or another spelling as in `longitude_periods`.
+[[nodiscard]] bool is_longitude_unit(std::string_view unit) noexcept;
+
+/// The periods of `axes` that are given without a number: 360 for those with a unit of longitudes, whether even or not,
+/// and those of `sample_periods` for others. Errors: as `sample_periods`; InvalidArgument for longitudes that span 360
+/// degrees or more, as if the first sample is repeated at the end, and for longitudes with a gap of 180 degrees or more
+/// between the last sample and the first one.
+template <int N>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] AxisPeriods<N> default_periods(const Grid<N>& grid, std::span<const int> axes);
+
 /// The seams of these axes. Vectors are 360 for coordinates with a unit of degrees_east (or another as in
-/// `longitude_periods`) that the seam continues, and the periods of `longitude_periods` or `sample_periods` for axes
-/// that are not curved; otherwise 0. `periods`, if any, has a number for each of the axes: the length of the seam along
-/// the axis's own coordinate, in the direction in which that grows, or NaN for the vector above. Errors: InvalidGrid
-/// (as `extract_curved`, and an axis that the grid does not have); InvalidArgument (another number of periods, or one
-/// that is not positive and finite).
+/// `longitude_periods`) that the seam continues, and the periods of `default_periods` for axes that are not curved;
+/// otherwise 0. `periods`, if any, has a number for each of the axes: the length of the seam along the axis's own
+/// coordinate, in the direction in which that grows, or NaN for the vector above. Errors: InvalidGrid (as
+/// `extract_curved`, and an axis that the grid does not have); InvalidArgument (as `default_periods`; another number of
+/// periods, or one that is not positive and finite).
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,

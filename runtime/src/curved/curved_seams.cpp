@@ -225,9 +225,9 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
     if (a < 0 || a >= N)
       throw Error(ErrorCode::InvalidGrid, fmt::format("a seam of axis {}; expected an axis from 0 to {}", a, N - 1));
     CurvedSeam<N>& seam = seams.emplace_back(CurvedSeam<N>{a, {}});
-    if (!detail::is_axis_curved(curved, a)) {
-      const double longitude = longitude_periods(grid)[a];
-      const double period = longitude != 0.0 ? longitude : sample_periods(grid, std::span(&a, 1))[a];
+    const bool is_given = !periods.empty() && !std::isnan(periods[seams.size() - 1]);
+    if (!is_given && !detail::is_axis_curved(curved, a)) {
+      const double period = default_periods(grid, std::span(&a, 1))[a];
       seam.vector[a] = grid.axes[a].is_descending() ? -period : period;
     }
     for (const CurvedAxis& one : curved) {
@@ -236,8 +236,7 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
       if (const double growth = mean_growth(grid, one, a); std::isfinite(growth))
         seam.vector[one.axis] = kTurn * std::round(growth / kTurn);
     }
-    if (!periods.empty() && !std::isnan(periods[seams.size() - 1]))
-      seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
+    if (is_given) seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
   }
   return seams;
 }

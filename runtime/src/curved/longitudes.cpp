@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Continues longitudes across 180 degrees between neighbours on a grid.
+// Longitudes: periods of axes, and longitudes in arrays, which are continued across 180 degrees between neighbours on a
+// grid.
 //
 // A run is a sequence of known samples of one row without a gap. Runs with neighbours in common are joined to pieces
 // by union-find, which stores the turns of 360 degrees between them.
@@ -12,12 +13,15 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "periodic/periods.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/error.hpp"
 
@@ -184,7 +188,46 @@ class Continued {
   Pieces pieces_;
 };
 
+/// 360, if the first sample follows the last one by a step that is positive and less than half a turn.
+double turn_of(const Axis& axis, int a) {
+  constexpr double kTolerance = 1e-3;  // of a step: coordinates in files may be of single precision
+  const double length = std::abs(axis[axis.size() - 1] - axis[0]);
+  const double step = length / static_cast<double>(axis.size() - 1);
+  const auto refuse = [&](const std::string& reason) {
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the period of {}, of longitudes, is 360, {}", detail::label_of_axis(axis, a), reason));
+  };
+  if (!(kTurn - length > kTolerance * step))
+    refuse(
+        fmt::format("and is not more than {}, the span of its samples; expected an axis without the last sample, if "
+                    "that repeats the first one",
+                    length));
+  if (!(kTurn - length < kTurn / 2))
+    refuse(
+        fmt::format("but its samples span {}, and the gap behind them is {}; expected less than 180, or a given "
+                    "period, such as {}",
+                    length, kTurn - length, length + step));
+  return kTurn;
+}
+
 }  // namespace
+
+bool is_longitude_unit(std::string_view unit) noexcept { return detail::is_longitude_unit(unit); }
+
+template <int N>
+requires DimensionBetween<N, 2, 5> AxisPeriods<N> default_periods(const Grid<N>& grid, std::span<const int> axes) {
+  AxisPeriods<N> periods = sample_periods(grid, axes);
+  for (const int a : axes) {
+    const Axis& axis = grid.axes[static_cast<std::size_t>(a)];
+    if (is_longitude_unit(axis.unit)) periods[static_cast<std::size_t>(a)] = turn_of(axis, a);
+  }
+  return periods;
+}
+
+template AxisPeriods<2> default_periods<2>(const Grid<2>&, std::span<const int>);
+template AxisPeriods<3> default_periods<3>(const Grid<3>&, std::span<const int>);
+template AxisPeriods<4> default_periods<4>(const Grid<4>&, std::span<const int>);
+template AxisPeriods<5> default_periods<5>(const Grid<5>&, std::span<const int>);
 
 void continue_longitudes(std::span<double> longitudes, std::span<const std::size_t> sizes) {
   const std::size_t expected =

@@ -15,6 +15,7 @@
 #include "errors.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
+#include "tegl/curved.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
@@ -516,6 +517,34 @@ TEST(Periodic, LongitudesAreFoundByTheirUnitAndSpan) {
   EXPECT_EQ(sample_periods(grid, std::array{0, 2}), (AxisPeriods<3>{360.0, 0.0, 4.0}));
   grid.axes[0] = grid.axes[0].part(0, 71);
   EXPECT_EQ(longitude_periods(grid), (AxisPeriods<3>{}));
+}
+
+TEST(Periodic, LongitudesHaveAPeriodOf360) {
+  Grid<3> grid = Grid<3>::unit({35, 4, 5});
+  grid.axes[0] = Axis::uniform(35, 0.0, 10.0);
+  EXPECT_EQ(default_periods(grid, std::array{0, 2}), (AxisPeriods<3>{350.0, 0.0, 5.0}));
+  for (const char* const unit : {"degrees_east", "degree_E"}) {
+    grid.axes[0].unit = unit;
+    EXPECT_EQ(default_periods(grid, std::array{0, 2}), (AxisPeriods<3>{360.0, 0.0, 5.0}));
+  }
+  const auto periods_of = [&](Axis axis) {
+    axis.name = "lon";
+    axis.unit = "degrees_east";
+    grid.axes[0] = std::move(axis);
+    return default_periods(grid, std::array{0})[0];
+  };
+  EXPECT_EQ(periods_of(Axis::rectilinear({350.0, 300.0, 280.0, 160.0, 10.0})), 360.0);
+  EXPECT_EQ(periods_of(Axis::uniform(3, -120.0, 120.0)), 360.0);
+  const auto refuses = [&](const std::string& part, const Axis& axis) {
+    expect_error(ErrorCode::InvalidArgument, part, [&] { (void)periods_of(axis); });
+  };
+  refuses("axis 0 (lon), of longitudes, is 360, and is not more than 360, the span", Axis::uniform(37, 0.0, 10.0));
+  refuses("is not more than 359.999", Axis::uniform(37, 0.0, 359.999 / 36));
+  refuses("is not more than 400", Axis::uniform(41, 0.0, -10.0));
+  refuses("its samples span 30, and the gap behind them is 330; expected less than 180, or a given period, such as 40",
+          Axis::uniform(4, 120.0, 10.0));
+  refuses("the gap behind them is 180", Axis::uniform(3, 0.0, 90.0));
+  refuses("has 2 samples", Axis::uniform(2, 0.0, 180.0));
 }
 
 TEST(Periodic, BadPeriodsAndOptionsAreRefused) {
