@@ -181,7 +181,10 @@ def curved_axes(curved: object, prepared: Prepared) -> list[tuple[int, int, np.n
         along = sum(1 << (prepared.ndim - 1 - a if prepared.is_reversed else a)
                     for a, size in enumerate(values.shape) if size > 1)
         unit = prepared.units[prepared.ndim - 1 - axis if prepared.is_reversed else axis]
-        result.append((axis, along, values.ravel("C" if prepared.is_reversed else "F"), "", unit))
+        flat = values.ravel("C" if prepared.is_reversed else "F")
+        if _tegl.is_longitude_unit(unit):  # `astype` has made a copy
+            _tegl.continue_longitudes(flat, prepared.turned(values.shape))
+        result.append((axis, along, flat, "", unit))
     return result
 
 
