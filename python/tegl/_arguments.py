@@ -22,10 +22,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from . import _dates, _kinds, _tegl
-from ._xarrays import INDEX_SUFFIX, in_order, is_xarray, own_curved
+from ._xarrays import (INDEX_SUFFIX, TIME_NAMES, curved_names, in_order, is_xarray, own_curved,
+                       without_longitude_and_latitude)
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
-_TIME_NAMES = ("t", "time")
 
 Progress = Callable[[float], object]
 #: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.
@@ -348,14 +348,14 @@ def _from_xarray(data) -> tuple[list, list[str], list[str], int | None, str]:
             elif values.dtype.kind not in "iuf":
                 raise ValueError(f"the coordinate '{dim}' has values of type {values.dtype}; expected numbers or dates "
                                  f"(data.drop_vars('{dim}') leaves the indices)")
-        if str(dim).lower() in _TIME_NAMES and time_axis is None:
+        if str(dim).lower() in TIME_NAMES and time_axis is None:
             time_axis = number
         coordinates.append(values)
         units.append(unit)
     names = [str(dim) for dim in data.dims]
-    for axis in own_curved(data):
-        names[axis] = names[axis].removesuffix(INDEX_SUFFIX)
-        units[axis] = str(data.coords[names[axis]].attrs.get("units", ""))
+    for axis, name in curved_names(data).items():
+        names[axis] = str(name)
+        units[axis] = str(data.coords[name].attrs.get("units", ""))
     return coordinates, names, units, time_axis, str(data.attrs.get("units", ""))
 
 
@@ -462,7 +462,8 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
             time_axis=None, allow_curved: bool = False, allow_lattice: bool = False) -> Prepared:
     """The library's view of an array. Values are copied only if the type or a mask requires it."""
     if not allow_curved and own_curved(data):
-        raise ValueError("an image with a curved grid, which only tegl.contour and tegl.filter know; expected its `array`, with "
+        indices = f"drop_vars({list(curved_names(data).values())})" if is_xarray(data) else "its `array`"
+        raise ValueError(f"an image with a curved grid, which only tegl.contour and tegl.filter know; expected {indices}, with "
                          "indices as coordinates, or a contour")
     if not allow_lattice and own_lattice(data) not in (None, "cubic"):
         raise ValueError(f"an image on the lattice {own_lattice(data)}, which only tegl.contour and tegl.count know; expected "

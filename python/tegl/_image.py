@@ -117,8 +117,9 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     curved
         Coordinates of the samples of a curved grid, in place of `coords` of some axes: a dict of axes (names or numbers) and
         arrays of coordinates with as many axes as `array`, and size 1 along the axes on which they do not depend, such as
-        `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Default: the image's own, from `tegl.read`.
-        See docs/other-tilings.md.
+        `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Default: the image's own, from `tegl.read`,
+        and the longitude and latitude in two dimensions of an xarray. Longitudes (by `axis_units`, degrees_east) are continued
+        across 180 degrees, in a copy. See docs/other-tilings.md.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
@@ -130,6 +131,8 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         if level is not None:
             raise ValueError(f"level {level!r} with label {label!r}; expected one of the two")
         array, level = _labels.mask_of(array, label), 0.5
+    if any(given is not None for given in (curved, spacing, origin, affine)):
+        array = _arguments.without_longitude_and_latitude(array)
     prepared = _prepared_on(lattice, array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                             axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
     if level is None and positions != "relaxed":
