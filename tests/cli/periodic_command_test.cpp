@@ -615,6 +615,25 @@ TEST_F(PeriodicCommand, LongitudesAreFoundByTheirUnitAndSpan) {
   expect_refused_of(file, {"--periodic", "lon,none", "-o", output}, "expected none without other axes");
   expect_refused_of(file, {"--periodic", "auto", "--pick", "1,2", "-o", output}, "--periodic auto with --pick");
   EXPECT_EQ(run_json({"contour", file, "--iso", "0", "--periodic", "none", "--pick", "170,0", "-o", output})["dim"], 1);
+  // uneven longitudes are not found, but have the period 360 by name
+  const auto write_longitudes = [&](const auto& longitude) {
+    std::vector<double> longitudes;
+    for (std::size_t i = 0; i < 36; ++i) longitudes.push_back(longitude(i));
+    image.grid.axes[0] = Axis::rectilinear(std::move(longitudes));
+    image.grid.axes[0].name = "lon";
+    image.grid.axes[0].unit = "degrees_east";
+    write_image(image.view(), file);
+  };
+  write_longitudes([](std::size_t i) { return -175.0 + 10.0 * static_cast<double>(i) + static_cast<double>(i % 2); });
+  EXPECT_THAT(remarks({"--periodic", "auto"}),
+              HasSubstr("no longitudes span 360 degrees in even steps, so no axis is periodic; if they run around the "
+                        "globe, --periodic lon makes the axis periodic"));
+  for (const char* const name : {"lon", "longitude"}) {
+    EXPECT_EQ(remarks({"--periodic", name}), "");
+    EXPECT_EQ(read_mesh(output).periods.at(0), 360.0) << name;
+  }
+  write_longitudes([](std::size_t i) { return 360.0 / 35 * static_cast<double>(i); });
+  expect_refused_of(file, {"--periodic", "lon", "-o", output}, "is not more than 360, the span of its samples");
 }
 
 TEST_F(PeriodicCommand, SlicesAtTimesFindLongitudes) {

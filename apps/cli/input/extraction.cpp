@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -172,6 +173,27 @@ bool ExtractionOptions::knows_periods(const Tiling& tiling) const {
   });
 }
 
+namespace {
+
+/// The end of the remark that no longitudes span 360 degrees: the reason, if there are longitudes.
+template <int N>
+std::string hint_on_longitudes(const Grid<N>& grid, const std::vector<CurvedAxis>& curved) {
+  constexpr std::string_view kEnd = ", so no axis is periodic";
+  for (const CurvedAxis& one : curved)
+    if (is_longitude_unit(one.unit))
+      return fmt::format(
+          "{}: the step behind the last sample is not 0.5 to 1.5 mean steps in each row; if they run around the globe, "
+          "--periodic {} makes the axis periodic",
+          kEnd, one.name);
+  for (std::size_t a = 0; a < N; ++a)
+    if (is_longitude_unit(grid.axes[a].unit))
+      return fmt::format(" in even steps{}; if they run around the globe, --periodic {} makes the axis periodic", kEnd,
+                         axis_label(grid.axes[a].name, a));
+  return std::string(kEnd);
+}
+
+}  // namespace
+
 template <int N>
 std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tiling) const {
   const bool finds = finds_longitudes();
@@ -185,7 +207,7 @@ std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tili
   const std::string list = fmt::format("{}", fmt::join(names, ","));
   if (finds) {
     tiling.periodic = std::move(names);
-    return list.empty() ? "--periodic auto: no longitudes span 360 degrees, so no axis is periodic"
+    return list.empty() ? "--periodic auto: no longitudes span 360 degrees" + hint_on_longitudes<N>(grid, tiling.curved)
                         : list + " spans 360 degrees, so it is periodic";
   }
   if (list.empty()) return "";
