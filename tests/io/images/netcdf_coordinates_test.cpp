@@ -232,7 +232,7 @@ TEST(NetCdfCoordinates, LongitudesAreContinuedAroundLand) {
     const std::vector<double> once = longitudes;
     continue_longitudes(longitudes, std::array<std::size_t, 4>{1, Globe::kColumns, 1, Globe::kRows});
     for (std::size_t s = 0; s < once.size(); ++s)
-      if (!std::isnan(once[s])) EXPECT_EQ(longitudes[s], once[s]) << where << ": a second call changes nothing";
+      ASSERT_TRUE(longitudes[s] == once[s] || std::isnan(once[s])) << where << ": a second call changes nothing";
     // two rows of each of three layers
     longitudes = globe.stored;
     continue_longitudes(longitudes, std::array<std::size_t, 3>{Globe::kColumns, 2, 3});
