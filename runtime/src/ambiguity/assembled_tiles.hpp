@@ -16,8 +16,8 @@
 
 namespace tegl::detail {
 
-/// Tiles of a chunk of rows, in order. A tile is a record of 64-bit words: its lists in two; the cubes with vertices, the
-/// numbers of own vertices and of simplices; the masks; the simplices, two per word.
+/// Tiles of a chunk of rows, in order. A tile is a record of 64-bit words: its lists in two; the cubes with vertices,
+/// the numbers of own vertices and of simplices; the masks; the simplices, two per word.
 class AssembledTiles {
  public:
   /// Removes all tiles. Memory is kept.
@@ -29,8 +29,8 @@ class AssembledTiles {
   /// Offset of the next tile, for `read`.
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
-  /// Appends a tile with its filling, unless more than `most` words would be kept. If so, it is full. `filling`: combined
-  /// from cubes. kAtOnce of its simplices are read even if it has fewer.
+  /// Appends a tile with its filling, unless more than `most` words would be kept. If so, it is full. `filling`:
+  /// combined from cubes. kAtOnce of its simplices are read even if it has fewer.
   void add(const ResolvedTile& tile, const ResolvedView& filling, std::size_t most) {
     const std::size_t first = size_, simplices = first + kHead + filling.own_vertices;
     const std::size_t end = simplices + (filling.simplex_count + 1) / 2;

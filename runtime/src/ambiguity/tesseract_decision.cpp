@@ -155,7 +155,8 @@ class WordResolver {
   }
 
  private:
-  /// Squares and tiles; calls take(tile, entry), where entry(cube) numbers the cube's entry in the table of resolved cubes.
+  /// Squares and tiles; calls take(tile, entry), where entry(cube) numbers the cube's entry in the table of resolved
+  /// cubes.
   template <class Take>
   void take_faces(const Take& take) noexcept {
     const bool separates = estimator_.separates();
