@@ -349,7 +349,7 @@ struct Saddles {
 /// Returns the greatest absolute value of the corners minus the isovalue.
 template <int N, class From, class D>
 HWY_INLINE auto take_saddles(const From& from, std::size_t at, Saddles<D>& saddles) {
-  static constexpr FaceNumbers<N> kNumbers;
+  constexpr FaceNumbers<N> kNumbers;
   using T = hn::TFromD<D>;
   // Adding 0 and not subtracting it makes 0 of -0.
   [[maybe_unused]] const auto minus = hn::Set(D(), from.isovalue == T{0} ? T{0} : -from.isovalue);
@@ -362,21 +362,26 @@ HWY_INLINE auto take_saddles(const From& from, std::size_t at, Saddles<D>& saddl
   auto largest = hn::Zero(D());
   for (unsigned row = 0; row < From::kRows; ++row)
     for (unsigned side = 0; side < 2; ++side) largest = hn::Max(largest, hn::Abs(difference(row, at + side)));
-  for (unsigned a = 1; a < N; ++a)
-    for (unsigned row = 0; row < From::kRows; ++row) {
-      const unsigned up_a = 1u << (a - 1);
-      if ((row & up_a) != 0) continue;
-      saddles.take(kNumbers.of[1u << a | 1u][row << 1], difference(row, at), difference(row, at + 1),
-                   difference(row | up_a, at), difference(row | up_a, at + 1));
-      for (unsigned b = a + 1; b < N; ++b) {
-        const unsigned up_b = 1u << (b - 1);
-        if ((row & up_b) != 0) continue;
-        for (unsigned side = 0; side < 2; ++side)
-          saddles.take(kNumbers.of[1u << a | 1u << b][row << 1 | side], difference(row, at + side),
-                       difference(row | up_a, at + side), difference(row | up_b, at + side),
-                       difference(row | up_a | up_b, at + side));
+  unrolled<N * From::kRows>([&](auto number) HWY_ATTR {
+    constexpr unsigned kA = number / From::kRows, kRow = number % From::kRows;
+    if constexpr (kA >= 1) {
+      constexpr unsigned kUpA = 1u << (kA - 1);
+      if constexpr ((kRow & kUpA) == 0) {
+        saddles.take(kNumbers.of[1u << kA | 1u][kRow << 1], difference(kRow, at), difference(kRow, at + 1),
+                     difference(kRow | kUpA, at), difference(kRow | kUpA, at + 1));
+        unrolled<2 * N>([&](auto other) HWY_ATTR {
+          constexpr unsigned kB = other / 2, kSide = other % 2;
+          if constexpr (kB > kA) {
+            constexpr unsigned kUpB = 1u << (kB - 1);
+            if constexpr ((kRow & kUpB) == 0)
+              saddles.take(kNumbers.of[1u << kA | 1u << kB][kRow << 1 | kSide], difference(kRow, at + kSide),
+                           difference(kRow | kUpA, at + kSide), difference(kRow | kUpB, at + kSide),
+                           difference(kRow | kUpA | kUpB, at + kSide));
+          }
+        });
       }
     }
+  });
   return largest;
 }
 
