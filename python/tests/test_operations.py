@@ -633,7 +633,7 @@ def test_the_nearest_component_of_any_contour(moving_balls):
     segments = tegl.contour(np.array([[0, 0, 0, 0], [1, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]], dtype=float), 0.5)
     both = segments.components()
     assert [both.nearest((1, 1.9), steps=steps) for steps in (1, (9, 1))] == [0, 1]
-    with pytest.raises(ValueError, match="3 numbers; expected 2"):
+    with pytest.raises(ValueError, match="3 numbers; expected one for each of 2 axes"):
         both.nearest((1, 2, 3))
     with pytest.raises(ValueError, match="steps above 0"):
         both.nearest((1, 2), steps=0)

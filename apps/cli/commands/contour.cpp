@@ -486,12 +486,11 @@ class ContourCommand final : public Command {
     remark(take_longitudes(input.image, given_.extraction, tiling));
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
-    for (FacetsResult& result : results)
-      write_image_facets(
-          input.image,
-          {result.isovalue, options, given_.extraction.single_precision(), given_.no_check,
-           given_.compress.compression(), tiling.periodic, given_.extraction.allows_empty(), tiling.lattice},
-          bar, result, written);
+    write_image_facets(
+        input.image,
+        {0.0, options, given_.extraction.single_precision(), given_.no_check, given_.compress.compression(),
+         tiling.periodic, given_.extraction.allows_empty(), tiling.lattice, tiling.division},
+        bar, results, written);
     written.keep();
     bar.clear();
     for (const FacetsResult& result : results)

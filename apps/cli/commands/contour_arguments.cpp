@@ -120,6 +120,7 @@ void ContourArguments::require_tiling() const {
   for_plain_cells([&](const char* with) {
     if (is_streamed() && extraction.tiling().lattice) return;
     if (knows_lattices(with) && extraction.tiling().lattice) return;
+    if (with == std::string_view(kFacets) && extraction.tiling().division) return;
     is_streamed() || facets ? extraction.refuse_other_tiling(with) : extraction.refuse_tiling(with);
   });
   if (attributes.wanted() && extraction.tiling().of_cells) extraction.refuse_tiling("--attribute");
