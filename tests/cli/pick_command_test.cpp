@@ -131,10 +131,10 @@ TEST_F(PickOnALattice, IsNearestModuloThePeriod) {
 
 TEST_F(PickOnALattice, OfAFileIsMeasuredInItsSteps) {
   // a layer is sqrt(2) / 2 away
-  ASSERT_EQ(
-      run_tegl({"sample", "x^2 + y^2 + z^2", "--lattice", "fcc", "--size", "20", "--box=-2,2", "-o", path("ball.nrrd")})
-          .exit,
-      0);
+  ASSERT_EQ(run_tegl({"sample", "x^2 + y^2 + z^2", "--lattice", "fcc", "--size", "20", "--range", "-2:2", "-o",
+                      path("ball.nrrd")})
+                .exit,
+            0);
   const RunResult run =
       run_tegl({"contour", path("ball.nrrd"), "--iso", "1", "--pick", "0,0,0", "-o", path("b.ply"), "--json"});
   ASSERT_EQ(run.exit, 0) << run.err;
