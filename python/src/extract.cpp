@@ -374,14 +374,6 @@ std::unique_ptr<AnyContour> extract_lattice_any(const AnyImage& image, const std
   });
 }
 
-/// The divisions by their names.
-std::vector<std::pair<const char*, Division>> divisions() {
-  return {{"kuhn", Division::kuhn},
-          {"alternating", Division::alternating},
-          {"symmetric", Division::symmetric},
-          {"hybrid", Division::hybrid}};
-}
-
 template <class Real>
 AnyContour divided_contour_of(const AnyImage& image, Division division, const std::vector<int>& axes,
                               const std::vector<double>& periods, double level, const ExtractOptions& options) {

@@ -511,6 +511,21 @@ class Components(Sequence[Component]):
         core = _tegl.select_components(self._contour._core, self._labels, chosen.tolist(), progress)
         return Contour._of(core, self._contour._is_reversed, self._contour._extent, self._contour._grid)
 
+    @_arguments.documents("nearest_component")
+    def nearest(self, point: Sequence[float] | np.ndarray, *, steps: float | Sequence[float] | np.ndarray = 1.0,
+                progress: Progress | None = None) -> int:
+        """The label of the component with the vertex nearest to a point, in the contour's coordinates.
+
+        `steps`: divide distances along the axes, one number or one for each axis. `select` of the label is the
+        component's contour. It works for all contours, also of lattices and meshes. ValueError for an empty contour.
+        """
+        place = _arguments.as_numbers("point", point, "its coordinates along the contour's axes")
+        found = _tegl.nearest_component(self._contour._core, self._labels, self._contour._listed(place),
+                                        self._contour._of_axes("steps", steps), progress)
+        if found is None:
+            raise ValueError("the component nearest to a point: the contour is empty")
+        return found[0]
+
     def largest(self, count: int = 1, *, progress: Progress | None = None) -> Contour:
         """The contour of the largest components by size."""
         count = _arguments.as_whole("count", count, 0)

@@ -211,7 +211,8 @@ def contour_facets(array, level: float, *, spacing=None, origin=None, coords=Non
                    direction: _kinds.Direction = "descent", close: bool = False, epsilon: float = 0.0,
                    normals: bool | _kinds.Normals | np.ndarray = False, dtype=np.float32, allow_empty: bool = False,
                    threads: int = 0, progress: Progress | None = None, periodic=None,
-                   lattice: _kinds.Lattice | typing.Literal["cubic"] | None = None) -> Facets:
+                   lattice: _kinds.Lattice | typing.Literal["cubic"] | None = None,
+                   division: _kinds.Division | None = None) -> Facets:
     """The contour {value = level} of an array of 2 to 4 axes as facets: points, segments, polygons and polyhedra with their
     incidences, as the grid cuts the contour.
 
@@ -223,14 +224,16 @@ def contour_facets(array, level: float, *, spacing=None, origin=None, coords=Non
                                          epsilon=epsilon, normals=normals, gradient="differences", threads=threads)
     prepared = _prepared_on(lattice, array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                             axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=False)
-    on = _lattice_of(array, lattice) or ""
+    on, simplices = _lattice_of(array, lattice) or "", _arguments.as_text("division", "" if division is None else division)
+    if on and simplices:
+        raise ValueError(f"lattice '{on}' with division; expected one of the two")
     is_double = _arguments.is_double(dtype, prepared)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     periodic = _periods.given_or_none(periodic)
     with prepared.terms():
         axes, periods = ([], []) if periodic is None else _periods.axes_of(periodic, prepared)
-        core = _tegl.extract_facets(prepared.image, on, axes, periods, level, is_double, options, progress)
+        core = _tegl.extract_facets(prepared.image, on, simplices, axes, periods, level, is_double, options, progress)
     if not allow_empty and not len(core.vertices):
         _outside.require_level(prepared, level)
     return Facets(core, prepared.is_reversed)
