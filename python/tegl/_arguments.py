@@ -166,28 +166,6 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
     return axis % ndim
 
 
-def curved_axes(curved: object, prepared: Prepared) -> list[tuple[int, int, np.ndarray, str, str]]:
-    """The argument `curved` for the library: axis, set of axes that the coordinate differs along, values, name, unit."""
-    if not isinstance(curved, Mapping) or not curved:
-        raise TypeError(f"curved is {curved!r}; expected a dict of axes and arrays of coordinates")
-    result = []
-    for key, given in curved.items():
-        axis = prepared.library_axis(key)
-        values = real(f"curved[{key!r}]", given).astype(np.float64)
-        sizes = prepared.sizes
-        if values.ndim != prepared.ndim or any(size not in (1, whole) for size, whole in zip(values.shape, sizes)):
-            raise ValueError(f"curved[{key!r}] has the shape {values.shape}; expected {sizes}, with 1 for axes along "
-                             "which the coordinate does not differ")
-        along = sum(1 << (prepared.ndim - 1 - a if prepared.is_reversed else a)
-                    for a, size in enumerate(values.shape) if size > 1)
-        unit = prepared.units[prepared.ndim - 1 - axis if prepared.is_reversed else axis]
-        flat = values.ravel("C" if prepared.is_reversed else "F")
-        if _tegl.is_longitude_unit(unit):  # `astype` has made a copy
-            _tegl.continue_longitudes(flat, prepared.turned(values.shape))
-        result.append((axis, along, flat, "", unit))
-    return result
-
-
 def turn_around(time_axis: int, ndim: int) -> bool:
     """Whether the library's axes are the array's in reverse order."""
     if as_whole("time_axis", time_axis) not in (0, -1, ndim - 1):

@@ -462,8 +462,7 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
     refused({"scale-space", ball, "--sigmas", "1:2:3", "-o", path("s.nrrd")}, "lattice fcc");
     refused({"elements", ball, "--iso", "0", "--per", "cell", "-o", path("e.txt")}, "--per cell on the lattice fcc");
     for (const std::vector<std::string>& more :
-         std::vector<std::vector<std::string>>{{"--pick", "0,0,0", "-o", output},
-                                               {"--division", "kuhn", "-o", output},
+         std::vector<std::vector<std::string>>{{"--division", "kuhn", "-o", output},
                                                {"--samples-are", "cells", "-o", output},
                                                {"--positions", "gravitation", "-o", output},
                                                {"--scale-space", "1:2:3", "-o", path("s.vtkhdf")}}) {
@@ -476,6 +475,7 @@ TEST_F(PeriodicCommand, TheLatticeIsAPropertyOfTheImage) {
       arguments.insert(arguments.end(), more.begin(), more.end());
       return run_json(arguments)["tiles"];
     };
+    EXPECT_EQ(json_of({"contour", ball, "--iso", "0", "--pick", "0,0,0", "-o", output})["pick"]["components"], 1);
     EXPECT_NE(facets({}), facets({"--lattice", "cubic"}));
     EXPECT_EQ(facets({}), facets({"--lattice", "fcc"}));
     EXPECT_LT(facets({}), facets({"--periodic", "x,y"}));
@@ -685,7 +685,7 @@ TEST_F(PeriodicCommand, CellsMayBeDivided) {
     EXPECT_EQ(check(to_contour<3>(read_mesh(output))).components, 2u);
   }
   expect_refused({"--division", "kuhn", "--lattice", "bcc", "-o", output}, "--lattice bcc with --division kuhn");
-  expect_refused({"--division", "kuhn", "--facets", "-o", output}, "--division kuhn with --facets");
+  expect_refused({"--division", "kuhn", "--index", "i.tindex", "-o", output}, "--division kuhn with --index");
   expect_refused({"--division", "kuhn", "--normals", "context", "-o", output}, "normals context of a divided image");
   expect_refused({"--division", "kuhn", "--stream", "-o", output}, "--division kuhn with --stream");
   expect_refused({"--division", "random", "-o", output}, "random");

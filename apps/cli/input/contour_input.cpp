@@ -52,9 +52,9 @@ Contour<N, double> widened(Contour<N, Real> contour) {
 /// The range of a curved coordinate.
 CutAxis cut_axis_of(const CurvedAxis& one) {
   CutAxis axis{one.name, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const double x : one.values) {
-    axis.first = std::fmin(axis.first, x);
-    axis.last = std::fmax(axis.last, x);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    axis.first = std::fmin(axis.first, one[i]);
+    axis.last = std::fmax(axis.last, one[i]);
   }
   return axis;
 }

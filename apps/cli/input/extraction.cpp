@@ -392,18 +392,19 @@ struct AxisNames {
   bool is_longitude = false;       ///< has longitudes, by their unit
 };
 
-/// The axis of this name, or else, if only one axis has longitudes, that one for lon and longitude, or else the axis of
-/// the letter x, y, z or t; axes.size() if there is none.
-std::size_t axis_named(const std::string& name, const std::vector<AxisNames>& axes) {
+/// The axis that a name of --periodic stands for: the one of this name, or else, if only one axis has longitudes, that
+/// one for lon and longitude, or else the axis of the letter x, y, z, t or u; axes.size() if there is none.
+std::size_t axis_of_period(const std::string& name, const std::vector<AxisNames>& axes) {
   const auto is_name = [&](const std::string& one) { return equal_ignoring_case(one, name); };
-  for (std::size_t a = 0; a < axes.size(); ++a)
+  std::vector<std::string> letters;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
     if (std::any_of(axes[a].names.begin(), axes[a].names.end(), is_name)) return a;
+    letters.push_back(axis_label("", a));
+  }
   const auto has_longitudes = [](const AxisNames& axis) { return axis.is_longitude; };
   if ((is_name("lon") || is_name("longitude")) && std::count_if(axes.begin(), axes.end(), has_longitudes) == 1)
     return static_cast<std::size_t>(std::find_if(axes.begin(), axes.end(), has_longitudes) - axes.begin());
-  std::size_t a = 0;
-  while (a < axes.size() && !is_name(axis_label("", a))) ++a;
-  return a;
+  return axis_called(name, letters);
 }
 
 [[noreturn]] void fail_to_name(const std::string& name, const std::vector<AxisNames>& axes) {
@@ -428,7 +429,7 @@ std::vector<NamedPeriod> named_periods(const std::vector<AxisNames>& axes, const
   for (const std::string& name : names) {
     const std::size_t equal = name.find('=');
     const std::string own = name.substr(0, equal);
-    const std::size_t named = axis_named(own, axes);
+    const std::size_t named = axis_of_period(own, axes);
     const bool is_all = named == axes.size() && name == "all";
     if (named == axes.size() && !is_all) fail_to_name(name, axes);
     for (std::size_t a = is_all ? 0 : named; a < (is_all ? axes.size() : named + 1); ++a) {

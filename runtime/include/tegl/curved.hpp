@@ -11,7 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -26,9 +25,9 @@ namespace tegl {
 /// Stores coordinates sample by sample (CurvedPoints): those that differ along the same axes together. Contours on the
 /// grid are the same, and take less time: with three coordinates in 3D arrays, up to 1.3 times the time of the plain
 /// contour in place of 1.7 times (docs/cost.md). One contour gains less time than this takes, so it is for several
-/// contours on a grid, or to save memory: 16 bytes per sample for three coordinates that float represents. The `values`
-/// of the results are empty; until this returns, the coordinates are twice in memory. `threads`: 0 for all of the
-/// machine. O(coordinates) time.
+/// contours on a grid, or to save memory: 16 bytes per sample for three coordinates that float represents. Coordinates
+/// that are side by side already need no copy: CurvedPoints::in_place. The `values` of the results are empty; until
+/// this returns, the coordinates are twice in memory. `threads`: 0 for all of the machine. O(coordinates) time.
 [[nodiscard]] std::vector<CurvedAxis> by_points(std::vector<CurvedAxis> curved, unsigned threads = 0);
 /// As above, for coordinates in memory of the caller: arrays[k] has those of curved[k], sizes[k] many. The `values` of
 /// `curved` are not used. Errors: InvalidArgument for other numbers of arrays or sizes.
@@ -55,9 +54,6 @@ struct CurvedSeam {
 template <int N>
 using CurvedSeams = std::type_identity_t<std::span<const CurvedSeam<N>>>;
 
-/// Whether a unit is one of longitudes: degrees_east, or another spelling as in `longitude_periods`.
-[[nodiscard]] bool is_longitude_unit(std::string_view unit) noexcept;
-
 /// The periods of `axes` that are given without a number: 360 for those with a unit of longitudes, whether even or not,
 /// and those of `sample_periods` for others. Errors: as `sample_periods`; InvalidArgument for longitudes that span 360
 /// degrees or more, as if the first sample is repeated at the end, and for longitudes with a gap of 180 degrees or more
@@ -79,10 +75,10 @@ requires DimensionBetween<N, 2, 4>
 
 /// The axes that run once around the globe: longitudes of `longitude_periods`, and axes along which curved longitudes
 /// (the same units) grow by 360 degrees from the first sample to one step behind the last one, in each row to half a
-/// step. `find_seams` makes their seams. Errors: InvalidGrid (as `extract_curved`). O(samples / samples along the axis)
-/// time.
+/// step. `find_seams` makes their seams. Errors: InvalidGrid (as `extract_curved`; in 5D any curved axis). O(samples /
+/// samples along the axis) time.
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::vector<int> longitude_axes(const Grid<N>& grid, std::span<const CurvedAxis> curved = {});
 
 /// The periods on index_grid(grid, curved) of the seams: for `extract_periodic` there. Errors: InvalidGrid (as

@@ -14,7 +14,6 @@
 #include <numeric>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -211,8 +210,6 @@ double turn_of(const Axis& axis, int a) {
 }
 
 }  // namespace
-
-bool is_longitude_unit(std::string_view unit) noexcept { return detail::is_longitude_unit(unit); }
 
 template <int N>
 requires DimensionBetween<N, 2, 5> AxisPeriods<N> default_periods(const Grid<N>& grid, std::span<const int> axes) {
