@@ -454,9 +454,10 @@ class SliceCommand final : public Command {
       std::optional<std::uint64_t> folded_cells;
       attributes_.keep_sizes_of(input.image);
       remark(take_grid(input, file(), options_, tiling, folded_cells));
-      space = tiling.of_cells                                     ? space_of_cells(input.image, tiling.cell_faces)
-              : tiling.periodic.empty() || !tiling.curved.empty() ? space_of(input.image, tiling.curved, tiling.periodic)
-                                                                  : space_of_periods(input.image, tiling.periodic);
+      space = tiling.of_cells ? space_of_cells(input.image, tiling.cell_faces)
+              : tiling.periodic.empty() || !tiling.curved.empty()
+                  ? space_of(input.image, tiling.curved, tiling.periodic)
+                  : space_of_periods(input.image, tiling.periodic);
       refuse_attributes_on_lattices(attributes_, tiling);
     } else {
       options_.require_to_5d();

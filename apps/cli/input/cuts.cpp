@@ -182,7 +182,8 @@ CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods
     return axis;
   }
   // the seam, if it is across the axis
-  const Period<N>& own = *std::find_if(periods.begin(), periods.end(), [&](const auto& p) { return p.vector[at] != 0.0; });
+  const Period<N>& own =
+      *std::find_if(periods.begin(), periods.end(), [&](const auto& p) { return p.vector[at] != 0.0; });
   for (std::size_t b = 0; b < N; ++b)
     if (b != at && std::abs(own.dual[b]) > 1e-9 * std::abs(own.dual[at])) return axis;
   const double start = own.start / own.dual[at];

@@ -23,8 +23,8 @@ double place_in_period(double place, double first, double period) {
 }
 
 template <int N>
-requires DimensionBetween<N, 3, 5> bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods,
-                                                     const Hyperplane<N>& hyperplane) {
+requires DimensionBetween<N, 3, 5>
+bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods, const Hyperplane<N>& hyperplane) {
   const detail::CrossedPeriods crossed =
       detail::crossed_periods<N>(detail::HyperplaneFamily<N>(hyperplane.normal), periods);
   return crossed.count == 0 || crossed.is_modulo;
@@ -39,7 +39,8 @@ namespace detail {
 template <int N>
 double place_modulo(const HyperplaneFamily<N>& family, const Period<N>& period, double offset) {
   const double along = period.vector[family.dropped_axis()];
-  const double start = period.start * along;  // <dual, x> = start here, if the dual vector has the direction of the axis
+  const double start =
+      period.start * along;  // <dual, x> = start here, if the dual vector has the direction of the axis
   return place_in_period(family.sign() * family.template level<double>(offset), std::min(start, start + along),
                          std::abs(along));
 }
@@ -63,9 +64,8 @@ class Mover {
         shares_(contour.vertices.size()) {}
 
   Contour<N, Real> run(std::size_t period) {
-    for_each_item(shares_.size(), work_.threads, {}, [&](std::size_t v) {
-      shares_[v] = share_of(period_, widened_point<N>(contour_.vertices[v]));
-    });
+    for_each_item(shares_.size(), work_.threads, {},
+                  [&](std::size_t v) { shares_[v] = share_of(period_, widened_point<N>(contour_.vertices[v])); });
     find_simplices();
     number_vertices();
     Contour<N, Real> result = moved();
@@ -85,13 +85,9 @@ class Mover {
   static constexpr std::int64_t kZero = std::int64_t{1} << 31;  ///< the lower half of the key of a vertex that stays
   static constexpr std::size_t kBlock = std::size_t{1} << 14;   ///< simplices of a part of the work
 
-  static Key key_of(Index vertex, std::int64_t times) {
-    return Key{vertex} << 32 | static_cast<Key>(times + kZero);
-  }
+  static Key key_of(Index vertex, std::int64_t times) { return Key{vertex} << 32 | static_cast<Key>(times + kZero); }
   static Index vertex_of(Key key) { return static_cast<Index>(key >> 32); }
-  static double times_of(Key key) {
-    return static_cast<double>(static_cast<std::int64_t>(key & 0xffffffffu) - kZero);
-  }
+  static double times_of(Key key) { return static_cast<double>(static_cast<std::int64_t>(key & 0xffffffffu) - kZero); }
   /// Contours whose coordinates are far from their periods are not sound, but must not overflow.
   static std::int64_t whole(double times) {
     constexpr double kMost = 1 << 29;
@@ -152,8 +148,8 @@ class Mover {
     keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
     constexpr std::size_t kMost = std::numeric_limits<Index>::max();
     if (keys_.size() > kMost || found_.size() > kMost)
-      throw Error(ErrorCode::TooLarge, fmt::format("{} simplices beside cuts across a period; expected at most {}",
-                                                   found_.size(), kMost));
+      throw Error(ErrorCode::TooLarge,
+                  fmt::format("{} simplices beside cuts across a period; expected at most {}", found_.size(), kMost));
   }
 
   [[nodiscard]] Contour<N, Real> moved() const {
@@ -168,8 +164,8 @@ class Mover {
     });
     for_each_item(found_.size(), work_.threads, {}, [&](std::size_t i) {
       for (int j = 0; j < N; ++j)
-        result.simplices[i][j] = static_cast<Index>(
-            std::lower_bound(keys_.begin(), keys_.end(), found_[i].corners[j]) - keys_.begin());
+        result.simplices[i][j] =
+            static_cast<Index>(std::lower_bound(keys_.begin(), keys_.end(), found_[i].corners[j]) - keys_.begin());
     });
     if (!contour_.normals.empty())
       for (const Key key : keys_) result.normals.push_back(contour_.normals[vertex_of(key)]);
@@ -210,9 +206,9 @@ Contour<N, Real> moved_to_places(const Contour<N, Real>& contour, std::size_t pe
   return Mover<N, Real>(contour, period, axis, places, work).run(period);
 }
 
-#define TEGL_INSTANTIATE_MOVED(N, Real)                                                          \
-  template Contour<N, Real> moved_to_places(const Contour<N, Real>&, std::size_t, int,           \
-                                            std::span<const double>, const WorkOptions&);
+#define TEGL_INSTANTIATE_MOVED(N, Real)                                                                         \
+  template Contour<N, Real> moved_to_places(const Contour<N, Real>&, std::size_t, int, std::span<const double>, \
+                                            const WorkOptions&);
 TEGL_INSTANTIATE_MOVED(3, float)
 TEGL_INSTANTIATE_MOVED(3, double)
 TEGL_INSTANTIATE_MOVED(4, float)

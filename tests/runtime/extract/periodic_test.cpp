@@ -562,9 +562,8 @@ TEST(Periodic, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
 TEST(Periodic, CutsAcrossAPeriodKeepAttributesAndNormals) {
   ExtractOptions options;
   options.normals = Normals::gradient;
-  auto contour = wrapped<double>(
-      torus_image<3>({12, 16, 10}, [](const auto& x) { return waves_from<3>(x, 0, 0.0); }), all_periodic<3>(), 0.0,
-      options);
+  auto contour = wrapped<double>(torus_image<3>({12, 16, 10}, [](const auto& x) { return waves_from<3>(x, 0, 0.0); }),
+                                 all_periodic<3>(), 0.0, options);
   Attribute& of_vertices = contour.vertex_attributes.emplace_back(Attribute{"y", "", 1, {}});
   for (const auto& x : contour.vertices) of_vertices.values.push_back(std::cos(kTurn * x[1]));
   Attribute& of_simplices = contour.simplex_attributes.emplace_back(Attribute{"number", "", 1, {}});
