@@ -561,7 +561,7 @@ TEST(Periodic, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
 
 TEST(Periodic, CutsAcrossAPeriodKeepAttributesAndNormals) {
   ExtractOptions options;
-  options.normals = Normals::gradient;
+  options.normals = Normals::differences;
   auto contour = wrapped<double>(torus_image<3>({12, 16, 10}, [](const auto& x) { return waves_from<3>(x, 0, 0.0); }),
                                  all_periodic<3>(), 0.0, options);
   Attribute& of_vertices = contour.vertex_attributes.emplace_back(Attribute{"y", "", 1, {}});
