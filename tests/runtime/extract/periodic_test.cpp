@@ -15,6 +15,7 @@
 #include "errors.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
+#include "tegl/curved.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/simplify.hpp"
 #include "tegl/slice.hpp"
@@ -551,7 +552,9 @@ TEST(Periodic, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
         const auto cut = slice(contour, hyperplanes[i]);
         EXPECT_EQ(cut.vertices, stack[i].vertices);
         EXPECT_EQ(cut.simplices, stack[i].simplices);
-        if (axis + 1 == N) EXPECT_EQ(measure_cuts(contour, places)[i].size, measure(cut).size);
+        if (axis + 1 == N) {
+          EXPECT_EQ(measure_cuts(contour, places)[i].size, measure(cut).size);
+        }
       }
     }
   };
@@ -580,6 +583,42 @@ TEST(Periodic, CutsAcrossAPeriodKeepAttributesAndNormals) {
     for (const Index v : contour.simplices[static_cast<std::size_t>(s)])
       least = std::min(least, std::abs(0.99 - contour.vertices[v][0]));
     EXPECT_LT(least, 0.1);
+  }
+}
+
+TEST(Periodic, CutsOfCurvedGridsAcrossAPeriodDoNotDependOnTheFirstColumn) {
+  // the columns are oblique and bent: cells of the last one reach far over the longitudes of the first one
+  constexpr int kColumns = 36, kRows = 12, kLayers = 6;
+  const auto stored_from = [](int first) {
+    OwnedImage<double, 3> image;
+    image.grid = Grid<3>::unit({kColumns, kRows, kLayers});
+    std::vector<CurvedAxis> curved = {{0, 3, {}, "lon", "degrees_east"}, {1, 3, {}, "lat", "degrees_north"}};
+    for (int k = 0; k < kLayers; ++k)
+      for (int j = 0; j < kRows; ++j)
+        for (int i = first; i < first + kColumns; ++i) {
+          const double lon = 10.0 * i + 4.0 * j + 3.0 * std::sin(0.9 * j);
+          const double lat = -60.0 + 10.0 * j + 2.0 * std::sin(kTurn * i / kColumns);
+          const double turn = lon * kTurn / 360.0;
+          image.values.push_back(std::sin(turn + 0.3) + 0.5 * std::cos(3.0 * turn) + 0.02 * lat - 0.3 * k + 0.6);
+          if (k > 0) continue;
+          curved[0].values.push_back(lon);
+          curved[1].values.push_back(lat);
+        }
+    const std::vector<int> axes = {0};
+    const auto seams = find_seams<3>(image.grid, curved, axes);
+    return extract_curved<double>(image.view(), curved, 0.0, {}, seams);
+  };
+  const auto contour = stored_from(0), other = stored_from(13);
+  for (double at = 1.0; at < 360.0; at += 19.0) {
+    const auto cut = slice(contour, Hyperplane<3>::across(0, at));
+    const auto expected = slice(other, Hyperplane<3>::across(0, at));
+    EXPECT_EQ(check(cut).bad_links, 0u);
+    EXPECT_TRUE(cut.periods.empty());
+    EXPECT_EQ(check(cut).boundary_simplices, check(expected).boundary_simplices) << at;
+    EXPECT_EQ(check(cut).components, check(expected).components) << at;
+    EXPECT_NEAR(measure(cut).size, measure(expected).size, 1e-9) << at;
+    EXPECT_GT(measure(cut).size, 1.0);
+    EXPECT_NEAR(measure(slice(contour, Hyperplane<3>::across(0, at - 720.0))).size, measure(cut).size, 1e-9);
   }
 }
 
