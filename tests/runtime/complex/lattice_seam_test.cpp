@@ -310,7 +310,7 @@ TEST(LatticeSeam, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
     constexpr double kTurn = 2.0 * std::numbers::pi;
     for (int axis = 0; axis < N; ++axis) {
       const auto from = [&](double start) {
-        const auto image = sampled_on_lattice<N>(lattice, grid_of_torus<N>(sizes), [&](std::array<double, N> x) {
+        const auto image = sampled_on_lattice<N>(lattice, grid_of_torus<N>(sizes), [&](auto x, const auto&, const auto&) {
           x[axis] += start;
           double sum = 0.4 * std::cos(kTurn * (x[0] - x[N - 1]));
           for (int a = 0; a < N; ++a) sum += (0.5 + 0.1 * a) * std::sin(kTurn * x[a] + a);
@@ -326,7 +326,9 @@ TEST(LatticeSeam, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
         EXPECT_GT(report.simplices, 0u);
         EXPECT_EQ(report.boundary_simplices, 0u) << axis << ", " << at;
         EXPECT_EQ(report.euler, check(expected).euler);
-        EXPECT_NEAR(measure(cut).size, measure(expected).size, 1e-9) << axis << ", " << at;
+        // in 4D, cells may be divided in the order of the samples
+        EXPECT_NEAR(measure(cut).size, measure(expected).size, N == 3 ? 1e-9 : 0.005 * measure(expected).size)
+            << axis << ", " << at;
         const auto further = slice(contour, Hyperplane<N>::across(axis, at + 1.0));
         EXPECT_NEAR(measure(further).size, measure(cut).size, 1e-9);
       }
