@@ -22,6 +22,7 @@ namespace tegl::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 class PeriodicCommand : public ProgramTest {
  protected:
@@ -180,7 +181,7 @@ TEST_F(PeriodicCommand, CommandsForPlainContoursUnrollWrappedOnes) {
   EXPECT_NEAR(all["content"].get<double>(), 4.0 / 3.0 * std::numbers::pi * 125, 15);
 }
 
-TEST_F(PeriodicCommand, CutsAcrossAPeriodAreOfTheUnrolledContourModuloThePeriod) {
+TEST_F(PeriodicCommand, CutsAcrossAPeriodAreModuloThePeriod) {
   const std::string saved = path("ball.vtkhdf");
   const auto z_last = [&](const std::string& name, double center) {
     return write(name, nifti_bytes(sample({20, 20, 30},
@@ -220,7 +221,7 @@ TEST_F(PeriodicCommand, CutsAcrossAPeriodAreOfTheUnrolledContourModuloThePeriod)
     }
     std::vector<std::string> arguments = measured;
     arguments.insert(arguments.end(), {"--at", "z=1"});
-    EXPECT_THAT(run_tegl(arguments).err, HasSubstr("the contour is unrolled"));
+    EXPECT_THAT(run_tegl(arguments).err, Not(HasSubstr("unrolled")));
     // slices, also between the last sample and the end of the period
     for (const char* const place : {"z=29.5", "z=-0.5", "z=59.5"}) {
       arguments = {"slice"};
@@ -228,7 +229,7 @@ TEST_F(PeriodicCommand, CutsAcrossAPeriodAreOfTheUnrolledContourModuloThePeriod)
       arguments.insert(arguments.end(), {"--at", place, "-o", path("cut.vtkhdf")});
       const RunResult run = run_tegl(arguments);
       EXPECT_EQ(run.exit, 0) << run.err;
-      EXPECT_THAT(run.err, HasSubstr("the contour is unrolled"));
+      EXPECT_THAT(run.err, Not(HasSubstr("unrolled")));
       EXPECT_NEAR(*measure(to_contour<2>(read_mesh(path("cut.vtkhdf")))).content, std::numbers::pi * 24.75, 1.5);
     }
   }
