@@ -450,12 +450,14 @@ class Contour(ArrayOrdered):
         return _export.points_and_cells(self._core)
 
     def to_meshio(self) -> typing.Any:
-        """A meshio.Mesh with points x, y, z; the t of 4D contours is point data. Needs meshio."""
+        """A meshio.Mesh with points x, y, z; the t of 4D contours is point data. A wrapped contour is a ValueError:
+        `unroll` it. Needs meshio."""
         return _export.to_meshio(self._core)
 
     def to_vtk(self) -> typing.Any:
         """A vtkPolyData of segments or triangles, or a vtkUnstructuredGrid of tetrahedra with t as a point array, with
-        normals and attributes, points as x, y, z. Needs VTK's Python modules."""
+        normals and attributes, points as x, y, z. A wrapped contour is a ValueError: `unroll` it. Needs VTK's Python
+        modules."""
         return _export.to_vtk(self._core)
 
     def to_pyvista(self) -> typing.Any:

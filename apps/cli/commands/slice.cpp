@@ -465,7 +465,7 @@ class SliceCommand final : public Command {
     }
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
-    require_contour(input, isovalue, options_.allows_empty());
+    require_contour(input, isovalue, options_.allows_empty(), tiling.lattice);
     const double read_seconds = watch.lap();
     std::vector<ContourResult> of_whole;
     std::vector<std::size_t> places;

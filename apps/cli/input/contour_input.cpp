@@ -323,7 +323,7 @@ void ContourInputCommand::contour_5d(const ReadImage5dResult& input, ExtractOpti
                                      Stopwatch& watch, ContourInput& result) const {
   options_.require_to_5d();
   result.variable = input.info.variable;
-  require_contour(input, *result.isovalue, allows_empty());
+  require_contour(input, *result.isovalue, allows_empty(), std::nullopt);
   result.last_axis = space_of(input.image).axes.back();
   result.ends = std::visit([](const auto& owned) { return ends_of_grid(owned.grid); }, input.image);
   result.single_precision = options_.single_precision();
@@ -369,7 +369,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   ReadImageResult input = std::move(std::get<ReadImageResult>(any));
   remark(take_grid(input, file(), options_, tiling, result.folded_cells));
   result.variable = input.info.variable;
-  require_contour(input, *result.isovalue, allows_empty());
+  require_contour(input, *result.isovalue, allows_empty(), tiling.lattice);
   result.is_curved = !tiling.curved.empty();
   result.lattice = tiling.lattice;
   if (attributes_of_meshes_ != nullptr) refuse_attributes_on_lattices(*attributes_of_meshes_, tiling);

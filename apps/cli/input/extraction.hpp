@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -160,11 +161,16 @@ inline int image_dim(const AnyImage5d&) { return 5; }
 /// empty.
 EmptyResult outside_error(double isovalue, const ValueRange& range, const std::string& unit);
 
-/// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: at least two samples along every
-/// axis, and samples on both sides of the isovalue. If only the latter fails, it is no error with `allow_empty`.
-/// Return the isovalue of the samples, which may be stored integers (ImageInfo::scaling).
-double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty);
-double require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty);
+/// Throws EmptyResult unless an image with these axes has cells: at least two samples along every axis, and the layers
+/// that the lattice needs.
+void require_samples(std::span<const Axis> axes, std::optional<Lattice> lattice);
+
+/// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: cells (require_samples), and
+/// samples on both sides of the isovalue. If only the latter fails, it is no error with `allow_empty`. Return the
+/// isovalue of the samples, which may be stored integers (ImageInfo::scaling).
+double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty, std::optional<Lattice> lattice);
+double require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty,
+                       std::optional<Lattice> lattice);
 
 /// The remark that missing samples prevent a contour.
 std::string remark_on_missing(double isovalue);
