@@ -74,6 +74,33 @@ std::vector<CurvedAxis> curved_axes(std::size_t n, int axes, bool rounded) {
   return curved;
 }
 
+/// Numbers in memory as coordinates of all axes, in place: `pitch` numbers from a sample to the next one, `step` from
+/// the coordinate of an axis to that of the next one.
+template <class T>
+std::vector<CurvedAxis> in_place(const std::vector<T>& numbers, std::size_t samples, std::size_t pitch,
+                                 std::size_t step) {
+  std::vector<CurvedAxis> curved;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    curved.push_back({static_cast<int>(axis),
+                      7,
+                      {},
+                      "",
+                      "",
+                      CurvedPoints::in_place(numbers.data() + axis * step, samples, 1, pitch)});
+  return curved;
+}
+
+/// Coordinates of three axes in one array: side by side, or one array after the other.
+template <class T>
+std::vector<T> in_one_array(const std::vector<CurvedAxis>& curved, bool side_by_side) {
+  const std::size_t samples = curved[0].size();
+  std::vector<T> numbers(3 * samples);
+  for (std::size_t a = 0; a < 3; ++a)
+    for (std::size_t i = 0; i < samples; ++i)
+      numbers[side_by_side ? 3 * i + a : a * samples + i] = static_cast<T>(curved[a].values[i]);
+  return numbers;
+}
+
 /// The first number of each line of 64 bytes that the vertices of a contour on a unit grid need of an array with
 /// `bytes` bytes per sample, in the order of the vertices.
 template <class T>
@@ -128,6 +155,13 @@ int measure_curved(std::size_t n, int runs) {
   const std::vector<CurvedAxis> two_by_points = by_points(curved_axes(n, 2, true), 1);
   const std::vector<CurvedAxis> rounded = curved_axes(n, 3, true);
   const std::vector<CurvedAxis> floats = by_points(rounded, 1), doubles = by_points(three, 1);
+  const std::vector<float> points_of_floats = in_one_array<float>(rounded, true);
+  const std::vector<float> arrays_of_floats = in_one_array<float>(rounded, false);
+  const std::vector<double> points_of_doubles = in_one_array<double>(three, true);
+  const std::size_t samples = n * n * n;
+  const std::vector<CurvedAxis> floats_in_place = in_place(points_of_floats, samples, 3, 1);
+  const std::vector<CurvedAxis> doubles_in_place = in_place(points_of_doubles, samples, 3, 1);
+  const std::vector<CurvedAxis> three_of_floats = in_place(arrays_of_floats, samples, 1, samples);
   const Contour<3, double> plain = extract<double>(image, 0.01, options);
   std::array<std::vector<const double*>, 3> lines;
   for (std::size_t a = 0; a < 3; ++a) lines[a] = needed_lines(plain, n, three[a].values.data(), sizeof(double));
@@ -144,6 +178,9 @@ int measure_curved(std::size_t n, int runs) {
                               {"two, by points (float)", [&] { return curved(two_by_points); }},
                               {"three, by points (float)", [&] { return curved(floats); }},
                               {"three, by points (double)", [&] { return curved(doubles); }},
+                              {"three, in place, 12 bytes a sample", [&] { return curved(floats_in_place); }},
+                              {"three, in place, 24 bytes a sample", [&] { return curved(doubles_in_place); }},
+                              {"three coordinates in 3D arrays (float)", [&] { return curved(three_of_floats); }},
                               {"three coordinates in 3D arrays", [&] { return curved(three); }},
                               {"reading the lines of the three arrays once",
                                [&] {
@@ -169,6 +206,9 @@ int measure_curved(std::size_t n, int runs) {
     for (Grids& each : cases) measure(each, run == 0);
   // apart, as the contour after it would take longer
   cases.push_back({"storing three arrays by points (float)", [&] { return by_points(rounded, 1)[0].size(); }});
+  for (int run = 0; run <= runs; ++run) measure(cases.back(), run == 0);
+  cases.push_back({"finding folds of three arrays",
+                   [&] { return static_cast<std::size_t>(find_folds<3>(grid, three, options.work).cells); }});
   for (int run = 0; run <= runs; ++run) measure(cases.back(), run == 0);
   for (Grids& each : cases) std::sort(each.seconds.begin(), each.seconds.end());
   const auto median = [](const Grids& of) { return of.seconds[of.seconds.size() / 2]; };

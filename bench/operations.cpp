@@ -4,7 +4,7 @@
 // contour (with --only, of operations with TEXT in their names). Reports the minimum wall time of R (5) repetitions, or
 // of fewer if these exceed 10 s in total, the minimum CPU time of all threads (which other work on the machine hardly
 // influences), and the peak memory in addition to the image, the contour and the operation's input. Writes a Markdown
-// table per file; docs/cost.md has the figures.
+// table per file; bench/operations.py runs it with several numbers of threads and keeps the figures.
 //
 // To add an operation, add a line to `operations_on`, or to a function that it calls.
 #include <malloc.h>
@@ -267,7 +267,7 @@ std::vector<Operation> operations_on(Subject<T>& subject) {
 }
 
 std::string milliseconds(double seconds) {
-  return seconds < 0.01 ? fmt::format("{:.2f} ms", seconds * 1e3) : fmt::format("{:.0f} ms", seconds * 1e3);
+  return seconds < 0.1 ? fmt::format("{:.2f} ms", seconds * 1e3) : fmt::format("{:.0f} ms", seconds * 1e3);
 }
 
 constexpr double kLongEnough = 10.0;  ///< seconds after which an operation is not repeated

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The figures of bench/results/*.json as tables for readers: writes bench/results/README.md, the table of missed marks in
-bench/README.md, and the table of resolved ambiguities in docs/cost.md."""
+bench/README.md, and the tables of resolved ambiguities and of operations in docs/cost.md."""
 
 import json
 import re
@@ -196,6 +196,44 @@ def resolved(result: dict) -> list[str]:
     return text
 
 
+def duration(milliseconds: float) -> str:
+    """With three digits."""
+    if milliseconds >= 1000:
+        return f"{milliseconds / 1000:.2f} s"
+    digits = 0 if milliseconds >= 100 else 1 if milliseconds >= 10 else 2
+    return f"{milliseconds:.{digits}f} ms"
+
+
+def operations_verdict(verdicts: list[dict]) -> str:
+    return "; ".join(f"{v['reached']:.{1 if v['reached'] >= 1 else 2}f}{v['unit']} (≤ {v['wanted']}{v['unit']}: "
+                     f"{'met' if v['met'] else 'not met'})" for v in verdicts)
+
+
+def operations_on(file: dict, has_verdicts: bool) -> list[str]:
+    """Times, in extractions on one thread, too, and the memory on one thread. The last column: what was to be reached,
+    in extractions or seconds, with one thread and with two."""
+    text = [f"*{file['file']}* at {file['isovalue']:g}: {file['contour']}.", "",
+            "| operation | 1 thread | in extractions | 2 threads | in extractions | memory |" + " 1 thread; 2 threads |" * has_verdicts,
+            "|---|---|---|---|---|---|" + "---|" * has_verdicts]
+    extract = file["operations"].get("`extract`", {}).get("threads", {}).get("1", {}).get("ms")
+    for name, row in file["operations"].items():
+        cells = []
+        for threads in ("1", "2"):
+            ms = row["threads"][threads]["ms"]
+            cells += [duration(ms), f"{ms / extract:.{0 if ms >= 9.95 * extract else 1}f}" if extract else ""]
+        reached = operations_verdict([v for v in file["verdicts"] if v["operation"] == name])
+        text.append(f"| {name} | {' | '.join(cells)} | {row['threads']['1']['mb']:.1f} MB |" + f" {reached} |" * has_verdicts)
+    return text
+
+
+def operations(result: dict) -> list[str]:
+    """The marks are for the first file."""
+    text = []
+    for i, file in enumerate(result["files"]):
+        text += [""] * (i > 0) + operations_on(file, i == 0)
+    return text
+
+
 def put_between(path, first: str, table: list[str]) -> None:
     """Puts a table between its marks in a page."""
     first, last = f"<!-- {first}: made by bench/tables.py -->\n", "<!-- end -->"
@@ -215,6 +253,12 @@ def write_resolved(path) -> None:
         put_between(path, "resolved ambiguities", resolved(json.loads(kept.read_text())))
 
 
+def write_operations(path) -> None:
+    kept = RESULTS / "operations.json"
+    if kept.exists():
+        put_between(path, "operations", operations(json.loads(kept.read_text())))
+
+
 def page(name: str, title: str, how: str, table) -> list[str]:
     """One section, if its file is there."""
     path = RESULTS / f"{name}.json"
@@ -231,6 +275,8 @@ def main() -> None:
                  side_by_side)
     text += page("resolved", "Resolved ambiguities", "`bench/resolved.py`: the rules of an image in one process, in random order. Processor "
                  "time on one thread, real time on several, relative to `low`: medians, least times, in brackets the numbers of simplices.", resolved)
+    text += page("operations", "Operations", "`bench/operations.py`: least times of several turns, with one thread and with two in each. In extractions: "
+                 "divided by the time of `extract` on one thread.", operations)
     text += page("scaling", "Scaling", "`bench/scaling`: the minimum of three runs of each.", scaling)
     text += page("stages", "Stages", "`extract_bench --benchmark_filter='^(extract|types)/'`: means over the iterations, ms.",
                  stages)
@@ -239,6 +285,7 @@ def main() -> None:
     (RESULTS / "README.md").write_text(re.sub(r"\n{3,}", "\n\n", "\n".join(text)) + "\n")
     write_missed(MISSED)
     write_resolved(COST)
+    write_operations(COST)
 
 
 if __name__ == "__main__":

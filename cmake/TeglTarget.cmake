@@ -83,6 +83,12 @@ function(tegl_release_level level)
   endif()
 endfunction()
 
+# An option of sources: in Release, GCC also inlines functions that another library could replace, as clang always does. For
+# code that calls many small functions: 2 % fewer instructions for 4D noise by Ambiguity::mean.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(tegl_inlines_all $<$<CONFIG:Release>:-fno-semantic-interposition>)
+endif()
+
 # tegl_quick_compile(target): for tests in the development preset. They compile in three quarters of the time at -O1, and
 # most of what they run is the library, at -O2.
 function(tegl_quick_compile target)

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "tegl/contour.hpp"
+#include "tegl/division.hpp"
 #include "tegl/error.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
@@ -78,6 +79,14 @@ Value named(const char* option, const std::string& name, const std::vector<std::
 /// The names of GradientDirection.
 inline std::vector<std::pair<const char*, GradientDirection>> gradient_directions() {
   return {{"descent", GradientDirection::descent}, {"ascent", GradientDirection::ascent}};
+}
+
+/// The divisions by their names.
+inline std::vector<std::pair<const char*, Division>> divisions() {
+  return {{"kuhn", Division::kuhn},
+          {"alternating", Division::alternating},
+          {"symmetric", Division::symmetric},
+          {"hybrid", Division::hybrid}};
 }
 
 /// The names of lattices.

@@ -10,11 +10,13 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <variant>
 #include <vector>
 
 #include "binding.hpp"
 #include "docs.hpp"
 #include "periods.hpp"
+#include "points.hpp"
 #include "tegl/cells.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/division.hpp"
@@ -147,14 +149,37 @@ std::unique_ptr<AnyContour> extract_any(const AnyImage& image, double level, boo
   });
 }
 
-using CurvedAxes = std::vector<std::tuple<int, unsigned, py::array_t<double, py::array::c_style | py::array::forcecast>,
-                                          std::string, std::string>>;
+/// Coordinates of a curved grid: axis, axes that they differ along, float or double numbers in memory that they share
+/// with others, from one to the next one of them, counted in numbers, and the unit.
+using CurvedAxes = std::vector<std::tuple<int, unsigned, py::array, std::size_t, std::string>>;
 
+/// The coordinates in place, so that their arrays must outlive the result.
 std::vector<CurvedAxis> curved_axes(const CurvedAxes& given) {
   std::vector<CurvedAxis> curved;
-  for (const auto& [axis, along, values, name, unit] : given)
-    curved.push_back({axis, along, std::vector<double>(values.data(), values.data() + values.size()), name, unit});
+  for (const auto& [axis, along, values, pitch, unit] : given) {
+    std::variant<const float*, const double*> first = static_cast<const double*>(values.data());
+    if (py::isinstance<py::array_t<float>>(values)) first = static_cast<const float*>(values.data());
+    const auto size = static_cast<std::size_t>(values.size());
+    curved.push_back({axis, along, {}, "", unit, CurvedPoints::in_place(first, size, 1, pitch)});
+  }
   return curved;
+}
+
+/// Stores arrays of equally many coordinates, float or double in one order, sample by sample: #samples x pitch.
+py::array by_points_any(const std::vector<py::array>& arrays, unsigned threads) {
+  std::vector<CoordinateArray> columns;
+  for (const py::array& array : arrays) {
+    if (py::isinstance<py::array_t<float>>(array))
+      columns.push_back({static_cast<const float*>(array.data())});
+    else
+      columns.push_back({static_cast<const double*>(array.data())});
+  }
+  const auto samples = arrays.empty() ? std::size_t{0} : static_cast<std::size_t>(arrays.front().size());
+  const auto points = [&] {
+    const py::gil_scoped_release release;
+    return std::make_unique<CurvedPoints>(samples, columns, threads);
+  }();
+  return array_of_points(*points, 0, points->pitch());
 }
 
 template <class Real>
@@ -296,19 +321,14 @@ std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage
       });
 }
 
+void continue_longitudes_any(py::array_t<double, py::array::c_style>& values, const std::vector<std::size_t>& sizes) {
+  continue_longitudes({values.mutable_data(), static_cast<std::size_t>(values.size())}, sizes);
+}
+
 std::vector<int> longitude_axes_any(const AnyImage& image, const CurvedAxes& given) {
   const std::vector<CurvedAxis> curved = curved_axes(given);
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> std::vector<int> {
-    if constexpr (N <= 4) {
-      return longitude_axes<N>(view.grid(), curved);
-    } else {
-      if (!curved.empty()) throw_dimension("curved axes", N, "2 to 4 dimensions");
-      const AxisPeriods<N> periods = longitude_periods(view.grid());
-      std::vector<int> axes;
-      for (int a = 0; a < N; ++a)
-        if (periods[a] != 0.0) axes.push_back(a);
-      return axes;
-    }
+    return longitude_axes<N>(view.grid(), curved);
   });
 }
 
@@ -356,14 +376,6 @@ std::unique_ptr<AnyContour> extract_lattice_any(const AnyImage& image, const std
     add_shape_normals(*result, normals, options);
     return result;
   });
-}
-
-/// The divisions by their names.
-std::vector<std::pair<const char*, Division>> divisions() {
-  return {{"kuhn", Division::kuhn},
-          {"alternating", Division::alternating},
-          {"symmetric", Division::symmetric},
-          {"hybrid", Division::hybrid}};
 }
 
 template <class Real>
@@ -476,7 +488,11 @@ void bind_extract(py::module_& m) {
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_periodic);
   m.def("extract_curved", &extract_curved_any, py::arg("image"), py::arg("curved"), py::arg("axes"), py::arg("periods"),
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_curved);
+  m.def("by_points", &by_points_any, py::arg("arrays"), py::arg("threads"), doc::by_points);
   m.def("longitude_axes", &longitude_axes_any, py::arg("image"), py::arg("curved"), doc::longitude_axes);
+  m.def("continue_longitudes", &continue_longitudes_any, py::arg("values").noconvert(), py::arg("sizes"),
+        doc::continue_longitudes);
+  m.def("is_longitude_unit", &is_longitude_unit, py::arg("unit"), doc::is_longitude_unit);
   m.def("find_folds", &find_folds_any, py::arg("image"), py::arg("curved"), py::arg("axes"), py::arg("periods"),
         doc::find_folds);
   m.def("extract_placed", &extract_placed_any, py::arg("image"), py::arg("rule"), py::arg("values"), py::arg("custom"),

@@ -20,17 +20,22 @@ namespace tegl::python {
 
 namespace {
 
-/// `axes`: the periodic axes, with their periods (NaN: by the samples); `lattice`: a name. Both are empty for none.
+/// `axes`: the periodic axes, with their periods (NaN: by the samples); `lattice`, `division`: names. All are empty for
+/// none.
 std::unique_ptr<AnyFacets> extract_facets_any(const AnyImage& image, const std::string& lattice,
-                                              const std::vector<int>& axes, const std::vector<double>& periods,
-                                              double level, bool is_double, const py::dict& arguments,
-                                              const py::object& progress) {
+                                              const std::string& division, const std::vector<int>& axes,
+                                              const std::vector<double>& periods, double level, bool is_double,
+                                              const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
   const auto of_view = [&]<class T, int N>(const Image<T, N>& view) -> std::unique_ptr<AnyFacets> {
     if constexpr (N <= 4) {
       const AxisPeriods<N> given = periods_of(view.grid(), axes, periods);
       const auto extracted = [&]<class Real>(Real) {
+        if (!division.empty()) {
+          const auto by = named<Division>("division", division, divisions());
+          return std::make_unique<AnyFacets>(extract_facets<Real>(view, by, level, options, given), level);
+        }
         if (lattice.empty())
           return std::make_unique<AnyFacets>(extract_facets<Real>(view, level, options, given), level);
         const auto on = named<Lattice>("lattice", lattice, lattices());
@@ -254,9 +259,9 @@ void bind_facets(py::module_& m) {
       .def("up", &up_of, py::arg("dimension"), "(first, facets, signs) of the facets that facets bound")
       .def("points", &points_of, py::arg("dimension"), "(first, points) of each facet")
       .def("euler", &euler_of, py::arg("dimension"), doc::facet_euler);
-  m.def("extract_facets", &extract_facets_any, py::arg("image"), py::arg("lattice"), py::arg("axes"),
-        py::arg("periods"), py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"),
-        doc::extract_facets);
+  m.def("extract_facets", &extract_facets_any, py::arg("image"), py::arg("lattice"), py::arg("division"),
+        py::arg("axes"), py::arg("periods"), py::arg("level"), py::arg("double"), py::arg("options"),
+        py::arg("progress"), doc::extract_facets);
   m.def("check_facets", &check_facets, py::arg("facets"), py::arg("progress"), doc::FacetReport);
   m.def("write_facets", &write_facets_any, py::arg("facets"), py::arg("path"), py::arg("compressed"),
         py::arg("progress"), doc::write_facets);

@@ -6,6 +6,7 @@
 #include "binding.hpp"
 #include "docs.hpp"
 #include "io/images/series_request.hpp"
+#include "points.hpp"
 #include "tegl/io/cell_meshes.hpp"
 #include "tegl/io/images.hpp"
 #include "tegl/io/meshes.hpp"
@@ -126,9 +127,7 @@ py::dict read_any(const std::vector<std::string>& paths, const std::string& vari
   result["cell_faces"] = py::cast(info.cell_faces);
   py::list curved;
   for (const CurvedAxis& one : info.curved)
-    curved.append(py::make_tuple(one.axis, one.along,
-                                 py::array_t<double>(static_cast<py::ssize_t>(one.values.size()), one.values.data()),
-                                 one.name, one.unit));
+    curved.append(py::make_tuple(one.axis, one.along, coordinates_of(one), one.name, one.unit));
   result["curved"] = curved;
   return result;
 }

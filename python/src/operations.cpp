@@ -225,6 +225,21 @@ std::unique_ptr<AnyContour> select_any(const AnyContour& contour, const Componen
   });
 }
 
+py::object nearest_any(const AnyContour& contour, const ComponentLabels& labels, const std::vector<double>& point,
+                       const std::vector<double>& steps, const py::object& progress) {
+  Call call(progress);
+  const WorkOptions work{.progress = call.progress()};
+  const NearestComponent nearest = call.run([&] {
+    return std::visit(
+        [&]<int N, class Real>(const Contour<N, Real>& c) {
+          return nearest_component(c, labels, to_array<N>("point", point), to_array<N>("steps", steps), work);
+        },
+        contour.contour);
+  });
+  if (nearest.label == kNoComponent) return py::none();
+  return py::make_tuple(nearest.label, nearest.distance);
+}
+
 template <int N>
 SimplifyOptions<N> simplify_options(const py::dict& arguments, Call& call) {
   SimplifyOptions<N> result;
@@ -385,6 +400,8 @@ void bind_operations(py::module_& m) {
         doc::split_components);
   m.def("select_components", &select_any, py::arg("contour"), py::arg("labels"), py::arg("keep"), py::arg("progress"),
         doc::select_components);
+  m.def("nearest_component", &nearest_any, py::arg("contour"), py::arg("labels"), py::arg("point"), py::arg("steps"),
+        py::arg("progress"), doc::nearest_component);
   m.def("simplify", &simplify_any, py::arg("contour"), py::arg("options"), py::arg("progress"), doc::simplify);
   m.def("merge_vertices", &merge_any, py::arg("contour"), py::arg("tolerance"), py::arg("most_listed"),
         py::arg("threads"), py::arg("progress"), doc::merge_vertices);

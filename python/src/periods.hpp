@@ -5,21 +5,22 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
+#include "tegl/curved.hpp"
 #include "tegl/periodic.hpp"
 
 namespace tegl::python {
 
-/// The periods of axes: those given, or else of longitudes and by the samples (NaN).
+/// The periods of axes: those given, or else `default_periods` (NaN).
 template <int N>
 AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<int>& axes, const std::vector<double>& given) {
-  AxisPeriods<N> periods = sample_periods(grid, axes);
-  const AxisPeriods<N> longitudes = longitude_periods(grid);
+  AxisPeriods<N> periods{};
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const auto axis = static_cast<std::size_t>(axes[i]);
-    if (longitudes[axis] != 0.0) periods[axis] = longitudes[axis];
-    if (!std::isnan(given.at(i))) periods[axis] = given[i];
+    const std::span one(&axes[i], 1);
+    periods.at(static_cast<std::size_t>(axes[i])) =
+        std::isnan(given.at(i)) ? default_periods<N>(grid, one)[static_cast<std::size_t>(axes[i])] : given[i];
   }
   return periods;
 }

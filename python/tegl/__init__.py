@@ -15,11 +15,12 @@ at the border of the array and at missing values. The contour of a 4D array can 
 """
 
 from . import _tegl
-from ._contour import (Components, Contour, check, components, elements, intersections, load, measure, merge_vertices,
-                       simplify, track)
+from ._contour import Components, Contour, load
+from ._curved import CurvedGrid
 from ._facets import FacetLevel, FacetReport, Facets
 from ._fields import fields, sample
 from ._filter import filter, most_stable_scale, scale_space
+from ._functions import check, components, elements, intersections, measure, merge_vertices, simplify, track
 from ._image import ContourSize, Image, contour, contour_facets, count, read, slice
 from ._incidence import Incidence
 from ._index import Index, PickReport
@@ -32,7 +33,7 @@ from ._tegl import Cancelled, __version__
 from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, TrackSegment
 
 __all__ = [
-    "Cancelled", "Component", "Components", "Contour", "ContourSize", "CutMeasures", "Elements", "ElementSum", "FacetLevel",
+    "Cancelled", "Component", "Components", "Contour", "ContourSize", "CurvedGrid", "CutMeasures", "Elements", "ElementSum", "FacetLevel",
     "FacetReport", "Facets", "Image", "Incidence", "Index", "Intersections", "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport",
     "SimplifyStats", "Track", "TrackEvent", "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__",
     "check", "components", "contour", "contour_facets", "contour_mesh", "contour_mesh_facets", "contour_points", "count", "count_mesh", "elements", "fields", "filter",

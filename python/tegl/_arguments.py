@@ -22,10 +22,10 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from . import _dates, _kinds, _tegl
-from ._xarrays import INDEX_SUFFIX, in_order, is_xarray, own_curved
+from ._xarrays import (INDEX_SUFFIX, TIME_NAMES, curved_names, in_order, is_xarray, own_curved,
+                       without_longitude_and_latitude)
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
-_TIME_NAMES = ("t", "time")
 
 Progress = Callable[[float], object]
 #: A coordinate: a number; or a date or a duration, in any of Python's forms, on an axis that has them.
@@ -164,25 +164,6 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
     if not -ndim <= axis < ndim:
         raise ValueError(f"axis is {axis}; expected {-ndim} to {ndim - 1}")
     return axis % ndim
-
-
-def curved_axes(curved: object, prepared: Prepared) -> list[tuple[int, int, np.ndarray, str, str]]:
-    """The argument `curved` for the library: axis, set of axes that the coordinate differs along, values, name, unit."""
-    if not isinstance(curved, Mapping) or not curved:
-        raise TypeError(f"curved is {curved!r}; expected a dict of axes and arrays of coordinates")
-    result = []
-    for key, given in curved.items():
-        axis = prepared.library_axis(key)
-        values = real(f"curved[{key!r}]", given).astype(np.float64)
-        sizes = prepared.sizes
-        if values.ndim != prepared.ndim or any(size not in (1, whole) for size, whole in zip(values.shape, sizes)):
-            raise ValueError(f"curved[{key!r}] has the shape {values.shape}; expected {sizes}, with 1 for axes along "
-                             "which the coordinate does not differ")
-        along = sum(1 << (prepared.ndim - 1 - a if prepared.is_reversed else a)
-                    for a, size in enumerate(values.shape) if size > 1)
-        unit = prepared.units[prepared.ndim - 1 - axis if prepared.is_reversed else axis]
-        result.append((axis, along, values.ravel("C" if prepared.is_reversed else "F"), "", unit))
-    return result
 
 
 def turn_around(time_axis: int, ndim: int) -> bool:
@@ -345,14 +326,14 @@ def _from_xarray(data) -> tuple[list, list[str], list[str], int | None, str]:
             elif values.dtype.kind not in "iuf":
                 raise ValueError(f"the coordinate '{dim}' has values of type {values.dtype}; expected numbers or dates "
                                  f"(data.drop_vars('{dim}') leaves the indices)")
-        if str(dim).lower() in _TIME_NAMES and time_axis is None:
+        if str(dim).lower() in TIME_NAMES and time_axis is None:
             time_axis = number
         coordinates.append(values)
         units.append(unit)
     names = [str(dim) for dim in data.dims]
-    for axis in own_curved(data):
-        names[axis] = names[axis].removesuffix(INDEX_SUFFIX)
-        units[axis] = str(data.coords[names[axis]].attrs.get("units", ""))
+    for axis, name in curved_names(data).items():
+        names[axis] = str(name)
+        units[axis] = str(data.coords[name].attrs.get("units", ""))
     return coordinates, names, units, time_axis, str(data.attrs.get("units", ""))
 
 
@@ -459,7 +440,8 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
             time_axis=None, allow_curved: bool = False, allow_lattice: bool = False) -> Prepared:
     """The library's view of an array. Values are copied only if the type or a mask requires it."""
     if not allow_curved and own_curved(data):
-        raise ValueError("an image with a curved grid, which only tegl.contour and tegl.filter know; expected its `array`, with "
+        indices = f"drop_vars({list(curved_names(data).values())})" if is_xarray(data) else "its `array`"
+        raise ValueError(f"an image with a curved grid, which only tegl.contour and tegl.filter know; expected {indices}, with "
                          "indices as coordinates, or a contour")
     if not allow_lattice and own_lattice(data) not in (None, "cubic"):
         raise ValueError(f"an image on the lattice {own_lattice(data)}, which only tegl.contour and tegl.count know; expected "

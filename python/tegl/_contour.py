@@ -12,12 +12,13 @@ import numpy as np
 
 from . import _arguments, _export, _incidence, _kinds, _results, _outside, _tegl
 from ._arguments import Labelled, Place, Places, Progress
+from ._columns import ArrayOrdered
 from ._incidence import Incidence
 from ._results import Component, CutMeasures, Elements, Intersections, Measures, MergeReport, MeshReport, SimplifyStats
 from ._track import TrackGraph
 
 
-class Contour:
+class Contour(ArrayOrdered):
     """Simplices in the space of an array: segments (2D), triangles (3D), tetrahedra (4D) or 4-simplices (5D).
 
     Results of `tegl.contour`, `load`, `slice`, `simplify` and other functions. The arrays are read-only views of the
@@ -31,7 +32,6 @@ class Contour:
     """
 
     _core: _tegl.Contour
-    _is_reversed: bool
     _grid: _tegl.Grid | None
     _extent: np.ndarray | None  #: of the image, 2 x N in the order of the columns of `vertices`; None: not known
 
@@ -91,35 +91,12 @@ class Contour:
         self._core, self._is_reversed, self._extent, self._grid = core, is_reversed, extent, grid
         return self
 
-    def _turned(self, rows: np.ndarray) -> np.ndarray:
-        """A view with the columns turned around: of points and of simplices alike, so that orientation stays."""
-        return rows[:, ::-1] if self._is_reversed else rows
-
-    def _listed(self, per_axis: typing.Iterable) -> list:
-        return list(per_axis)[::-1] if self._is_reversed else list(per_axis)
-
     # What it is.
-
-    @property
-    def ndim(self) -> int:
-        """N, the number of coordinates of a vertex."""
-        return self._core.ndim
-
-    @property
-    def vertices(self) -> np.ndarray:
-        """#V x N coordinates, row = vertex, columns in the order of the array's axes."""
-        return self._turned(self._core.vertices)
 
     @property
     def simplices(self) -> np.ndarray:
         """#S x N vertex numbers (uint32), row = simplex."""
         return self._turned(self._core.simplices)
-
-    @property
-    def normals(self) -> np.ndarray | None:
-        """#V x N, of length 1, or 0 if the gradient vanishes; None if they were not requested."""
-        normals = self._core.normals
-        return None if normals is None else self._turned(normals)
 
     @property
     def vertex_attributes(self) -> dict[str, np.ndarray]:
@@ -140,16 +117,6 @@ class Contour:
                 for name, (_, unit) in attributes.items()}
 
     @property
-    def axis_names(self) -> tuple[str, ...]:
-        """Names of the columns of `vertices`; empty for an axis without one."""
-        return tuple(self._listed(self._core.axis_names))
-
-    @property
-    def axis_units(self) -> tuple[str, ...]:
-        """Units of the columns of `vertices`; empty for an axis without one."""
-        return tuple(self._listed(self._core.axis_units))
-
-    @property
     def time_axis(self) -> int:
         """The axis across which contours are cut by default, and along which parts are tracked: 0 or N - 1."""
         return 0 if self._is_reversed else self.ndim - 1
@@ -158,12 +125,6 @@ class Contour:
     def direction(self) -> _kinds.Direction:
         """The direction of orientation and normals: "descent" (towards lower values) or "ascent"."""
         return self._core.direction
-
-    @property
-    def periods(self) -> np.ndarray:
-        """#P x N: the vectors by which a wrapped contour repeats itself, columns as in `vertices`; 0 x N for others."""
-        numbers = np.array(self._core.periods).reshape(-1, 2 * self.ndim + 1)
-        return self._turned(numbers[:, :self.ndim])
 
     @property
     def isovalue(self) -> float | None:
@@ -195,7 +156,10 @@ class Contour:
         return _outside.extent_around(self.vertices), "contour"
 
     def _require_places(self, axis: int, places: Sequence[float], given: Sequence) -> None:
-        """Raises a ValueError unless all places along an axis lie in that extent."""
+        """Raises a ValueError unless all places along an axis lie in that extent. A periodic axis has every place."""
+        lengths = np.abs(self.periods)
+        if np.any(lengths[:, axis] > 1e-9 * lengths.max(axis=1, initial=0.0)):
+            return
         extent, of = self._extent_around()
         _outside.require_places(extent, axis, places, given, self.vertices.dtype, self.axis_names[axis],
                                 self.axis_units[axis], of)
@@ -552,6 +516,21 @@ class Components(Sequence[Component]):
         core = _tegl.select_components(self._contour._core, self._labels, chosen.tolist(), progress)
         return Contour._of(core, self._contour._is_reversed, self._contour._extent, self._contour._grid)
 
+    @_arguments.documents("nearest_component")
+    def nearest(self, point: Sequence[float] | np.ndarray, *, steps: float | Sequence[float] | np.ndarray = 1.0,
+                progress: Progress | None = None) -> int:
+        """The label of the component with the vertex nearest to a point, in the contour's coordinates.
+
+        `steps`: divide distances along the axes, one number or one for each axis. `select` of the label is the
+        component's contour. It works for all contours, also of lattices and meshes. ValueError for an empty contour.
+        """
+        place = _arguments.as_numbers("point", point, "its coordinates along the contour's axes")
+        found = _tegl.nearest_component(self._contour._core, self._labels, self._contour._listed(place),
+                                        self._contour._of_axes("steps", steps), progress)
+        if found is None:
+            raise ValueError("the component nearest to a point: the contour is empty")
+        return found[0]
+
     def largest(self, count: int = 1, *, progress: Progress | None = None) -> Contour:
         """The contour of the largest components by size."""
         count = _arguments.as_whole("count", count, 0)
@@ -584,140 +563,3 @@ def load(path: str | os.PathLike, *, time_axis: int = 0, allow_outside_paths: bo
     core = _tegl.load_contour(os.fspath(path), _arguments.as_bool("allow_outside_paths", allow_outside_paths),
                               _arguments.as_bool("separate_process", separate_process), progress)
     return Contour._of(core, _arguments.turn_around(time_axis, core.ndim))
-
-
-@_arguments.documents("MeshReport")
-def check(contour: Contour, *, incidence: Incidence | None = None, threads: int = 0,
-          progress: Progress | None = None) -> MeshReport:
-    """Checks whether a contour is an oriented manifold and closed, and counts its components and faults."""
-    _arguments.core_of(contour)
-    return Contour.check(contour, incidence=incidence, threads=threads, progress=progress)
-
-
-@_arguments.documents("find_intersections", "Intersections")
-def intersections(contour: Contour, *, tile: float | Sequence[float] | None = None,
-                  origin: float | Sequence[float] = 0.0, most_listed: int | None = None, threads: int = 0,
-                  progress: Progress | None = None) -> Intersections:
-    """Finds all pairs of simplices that intersect outside of their common face, by exact arithmetic.
-
-    `tile` is the size of a tile, one number for all axes or one for each; then the tiles with intersections are counted.
-    For an array without coordinates it is 1. `origin` is a corner of a tile.
-    """
-    _arguments.core_of(contour)
-    return Contour.intersections(contour, tile=tile, origin=origin, most_listed=most_listed, threads=threads,
-                                 progress=progress)
-
-
-@typing.overload
-def measure(contour: Contour, *, at: None = None, allow_empty: bool = False, incidence: Incidence | None = None,
-            threads: int = 0, progress: Progress | None = None) -> Measures: ...
-
-
-@typing.overload
-def measure(contour: Contour, *, at: Place | Places | Labelled, allow_empty: bool = False, threads: int = 0,
-            progress: Progress | None = None) -> CutMeasures: ...
-
-
-@_arguments.documents("measure", "Measures", "measure_cuts")
-def measure(contour: Contour, *, at=None, allow_empty: bool = False, incidence: Incidence | None = None,
-            threads: int = 0, progress: Progress | None = None) -> Measures | CutMeasures:
-    """Size, enclosed content, centroid and box of a contour; or, with `at`, size and content of its cuts at times.
-
-    A time outside of the image is a ValueError, as in `slice`; with `allow_empty` its size and content are 0.
-    """
-    _arguments.core_of(contour)
-    return Contour.measure(contour, at=at, allow_empty=allow_empty, incidence=incidence, threads=threads,
-                           progress=progress)
-
-
-@_arguments.documents("label_components", "components", "Component")
-def components(contour: Contour, *, incidence: Incidence | None = None, threads: int = 0,
-               progress: Progress | None = None) -> Components:
-    """The connected components of a contour: their labels and measures; contours of selected ones."""
-    _arguments.core_of(contour)
-    return Contour.components(contour, incidence=incidence, threads=threads, progress=progress)
-
-
-@_arguments.documents("merge_vertices", "MergeCounts", "MergeReport")
-def merge_vertices(contour: Contour, tolerance: float = 0.0, *, most_listed: int = 1000, threads: int = 0,
-                   progress: Progress | None = None) -> tuple[Contour, MergeReport]:
-    """A contour with vertices that coincide merged, without simplices of zero size, and a report of its pinches.
-
-    tolerance
-        Vertices at most this far apart are merged; 0: only vertices at equal positions.
-    """
-    _arguments.core_of(contour)
-    return Contour.merge_vertices(contour, tolerance, most_listed=most_listed, threads=threads, progress=progress)
-
-
-@_arguments.documents("elements", "elements_by_cell", "Elements")
-def elements(contour: Contour, *, by_cell: bool = False, threads: int = 0,
-             progress: Progress | None = None) -> Elements:
-    """Hypersurface elements of a contour: one per simplex, or (`by_cell`) per connected part in a cell of the grid.
-
-    `by_cell` needs a contour whose grid is known: from `tegl.contour`, or components of such a contour.
-    """
-    _arguments.core_of(contour)
-    return Contour.elements(contour, by_cell=by_cell, threads=threads, progress=progress)
-
-
-@typing.overload
-def simplify(contour: Contour, ratio: float | None = None, *, count: int | None = None,
-             max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
-             border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
-             scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-             allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
-             progress: Progress | None = None,
-             return_stats: typing.Literal[False] = False) -> Contour: ...
-
-
-@typing.overload
-def simplify(contour: Contour, ratio: float | None = None, *, count: int | None = None,
-             max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
-             border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
-             scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-             allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
-             progress: Progress | None = None,
-             return_stats: typing.Literal[True]) -> tuple[Contour, SimplifyStats]: ...
-
-
-@_arguments.documents("simplify", "SimplifyOptions", "SimplifyStats")
-def simplify(contour: Contour, ratio: float | None = None, *, count: int | None = None,
-             max_error: float | None = None, method: _kinds.SimplifyMethod = "quadric",
-             border: _kinds.SimplifyBorder = "fixed", max_curvature: float | None = None,
-             scale: Sequence[float] | typing.Literal["auto"] | None = None, measure: bool = True,
-             allow_nonmanifold: bool = False, keep_embedded: bool = False, threads: int = 0,
-             progress: Progress | None = None,
-             return_stats: bool = False) -> Contour | tuple[Contour, SimplifyStats]:
-    """A contour with fewer simplices and the same topology; the attribute "simplification_error" bounds the error.
-
-    ratio, count, max_error
-        The goal: this fraction of the simplices (0.1: a tenth), this number of them, or the fewest within this error.
-        With several, the first one reached ends the simplification.
-    method, border
-        "quadric", "facets", "vertices" or "fast"; "fixed" or "within".
-    scale
-        A weight for the lengths along each axis of the array, or "auto".
-    return_stats
-        Whether to return (contour, SimplifyStats).
-    """
-    _arguments.core_of(contour)
-    return Contour._simplify(contour, ratio, count, max_error, method, border, max_curvature, scale, measure,
-                             allow_nonmanifold, keep_embedded, threads, progress, return_stats)
-
-
-@_arguments.documents("track", "TrackOptions", "TrackEventKind", "TrackSegment", "TrackSample")
-def track(contour: Contour, *, min_lifetime: float = 0.0, times: int | Places | Labelled | None = None,
-          first: Place | None = None, last: Place | None = None, handles: bool = True, label_simplices: bool = False,
-          allow_empty: bool = False, incidence: Incidence | None = None, threads: int = 0,
-          progress: Progress | None = None) -> TrackGraph:
-    """Tracks the parts of a contour along its time axis: births, merges, splits, deaths.
-
-    times
-        Times at which parts are measured, ascending; or a whole number of evenly spaced times. A time outside of the
-        image is a ValueError, as in `tegl.slice`; with `allow_empty` there are no parts at it.
-    """
-    _arguments.core_of(contour)
-    return Contour.track(contour, min_lifetime=min_lifetime, times=times, first=first, last=last, handles=handles,
-                         label_simplices=label_simplices, allow_empty=allow_empty, incidence=incidence, threads=threads,
-                         progress=progress)

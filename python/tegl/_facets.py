@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _arguments, _kinds, _tegl
 from ._arguments import Progress
+from ._columns import ArrayOrdered
 from ._contour import Contour
 
 _NAMES = ("points", "segments", "polygons", "polyhedra")
@@ -185,7 +186,7 @@ class FacetLevel:
         return self._places["is_cap"]
 
 
-class Facets:
+class Facets(ArrayOrdered):
     """A contour as facets of all dimensions, without triangulation: `facets[k]` has the facets of dimension k.
 
     ::
@@ -203,14 +204,11 @@ class Facets:
     the simplices of `tegl.contour`; those of lower dimensions have one of their own, to which `signs` refer.
     """
 
+    _core: _tegl.Facets
+
     def __init__(self, core: _tegl.Facets, is_reversed: bool) -> None:
         self._core, self._is_reversed = core, is_reversed
         self._levels = tuple(FacetLevel(core, k, is_reversed) for k in range(core.ndim))
-
-    @property
-    def ndim(self) -> int:
-        """N, the number of coordinates of a point. The facets have the dimensions 0 to N - 1."""
-        return self._core.ndim
 
     def __len__(self) -> int:
         return len(self._levels)
@@ -225,30 +223,6 @@ class Facets:
         counts = ", ".join(f"{len(level)} {_NAMES[level.dimension]}" for level in self._levels)
         return f"<tegl.Facets at {self.isovalue:g}: {counts}>"
 
-    def _turned(self, rows: np.ndarray) -> np.ndarray:
-        return rows[:, ::-1] if self._is_reversed else rows
-
-    @property
-    def vertices(self) -> np.ndarray:
-        """#P x N coordinates of the points, the facets of dimension 0."""
-        return self._turned(self._core.vertices)
-
-    @property
-    def normals(self) -> np.ndarray | None:
-        """#P x N, of length 1, or 0 if the gradient vanishes; None if they were not requested."""
-        normals = self._core.normals
-        return None if normals is None else self._turned(normals)
-
-    @property
-    def axis_names(self) -> tuple[str, ...]:
-        """Names of the columns of `vertices`; empty for an axis without one."""
-        return tuple(self._core.axis_names[::-1] if self._is_reversed else self._core.axis_names)
-
-    @property
-    def axis_units(self) -> tuple[str, ...]:
-        """Units of the columns of `vertices`; empty for an axis without one."""
-        return tuple(self._core.axis_units[::-1] if self._is_reversed else self._core.axis_units)
-
     @property
     def direction(self) -> _kinds.Direction:
         """The side that the facets of the highest dimension and the normals face: "descent" or "ascent"."""
@@ -258,12 +232,6 @@ class Facets:
     def isovalue(self) -> float:
         """The level of the contour."""
         return self._core.isovalue
-
-    @property
-    def periods(self) -> np.ndarray:
-        """#P x N: the vectors by which the contour repeats itself along periodic axes, as `Contour.periods`."""
-        numbers = np.array(self._core.periods).reshape(-1, 2 * self.ndim + 1)
-        return self._turned(numbers[:, :self.ndim])
 
     @property
     def cell_count(self) -> int | None:

@@ -7,12 +7,11 @@ import builtins
 import dataclasses
 import os
 import typing
-import warnings
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _facets, _kinds, _labels, _results, _outside, _periods, _tegl
+from . import _arguments, _curved, _facets, _kinds, _labels, _results, _outside, _periods, _tegl
 from ._arguments import Labelled, Place, Places, Progress
 from ._contour import Contour
 from ._facets import Facets
@@ -84,7 +83,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     periodic
         Axes that are periodic: a name or number, or "lon" or "longitude" for the axis along which longitudes run around
         the globe, a list of these, "all", a dict of axes and their periods, or "auto": the
-        longitudes (by their unit, degrees_east) that span 360 degrees, if there are any; None or "none": no axis. Without a dict, the period is the number of samples x the step, or 360 for longitudes. The contour is *wrapped*: it continues
+        longitudes (by their unit, degrees_east) that span 360 degrees, if there are any; None or "none": no axis. Without a dict, the period is the number of samples x the step, or 360 for axes with a unit of degrees_east. The contour is *wrapped*: it continues
         across the seam, and `Contour.unroll` makes one for pictures. On a curved grid, the last samples along the axis
         are connected to the first ones: at their own places (O-grids), 360 further along longitudes, or by a given period
         along the axis's own coordinate, in the direction in which that grows. See docs/other-tilings.md.
@@ -117,8 +116,12 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     curved
         Coordinates of the samples of a curved grid, in place of `coords` of some axes: a dict of axes (names or numbers) and
         arrays of coordinates with as many axes as `array`, and size 1 along the axes on which they do not depend, such as
-        `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Default: the image's own, from `tegl.read`.
-        See docs/other-tilings.md.
+        `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Or an array of the shape (..., N), whose last
+        axis has the coordinates of each sample, as of VTK's structured grids. float32 and float64 in C order (with
+        `time_axis=-1` in Fortran order) are read in place; coordinates of a sample side by side in memory take less time. For
+        several contours: a `tegl.CurvedGrid`. Default: the image's own, from `tegl.read`, and
+        the longitude and latitude in two dimensions of an xarray. Longitudes (by `axis_units`, degrees_east) are continued
+        across 180 degrees, in a copy if they must be. See docs/other-tilings.md.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
@@ -130,6 +133,8 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         if level is not None:
             raise ValueError(f"level {level!r} with label {label!r}; expected one of the two")
         array, level = _labels.mask_of(array, label), 0.5
+    if any(given is not None for given in (curved, spacing, origin, affine)):
+        array = _arguments.without_longitude_and_latitude(array)
     prepared = _prepared_on(lattice, array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                             axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
     if level is None and positions != "relaxed":
@@ -152,9 +157,9 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     periodic = _periods.given_or_none(periodic)
-    of_samples = [] if curved is None else _arguments.curved_axes(curved, prepared)
+    of_samples = [] if curved is None else _curved.coordinates_of(curved, prepared)
     if curved is not None:
-        _refuse_other_coordinates([prepared.library_axis(axis) for axis in curved], prepared, spacing, origin, coords, affine)
+        _refuse_other_coordinates([one[0] for one in of_samples], prepared, spacing, origin, coords, affine)
     with prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic),
                                           ("samples" if of_cells else "positions",
@@ -174,13 +179,13 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
             core = _tegl.extract_placed(prepared.image, rule, values, _arguments.position_function(positions), 0.01, weight,
                                         faces, of_samples, level, is_double, options, progress)
             if curved is not None:
-                _warn_of_folds(prepared, of_samples, [], [])
+                _curved.warn_of_folds(curved, prepared, of_samples, [], [])
         elif lattice is not None:
             core = _tegl.extract_lattice(prepared.image, _arguments.as_text("lattice", lattice), axes, periods, level,
                                          is_double, options, progress)
         elif curved is not None:
             core = _tegl.extract_curved(prepared.image, of_samples, axes, periods, level, is_double, options, progress)
-            _warn_of_folds(prepared, of_samples, axes, periods)
+            _curved.warn_of_folds(curved, prepared, of_samples, axes, periods)
         elif not axes:
             core = _tegl.extract(prepared.image, level, is_double, options, progress)
         else:
@@ -209,7 +214,8 @@ def contour_facets(array, level: float, *, spacing=None, origin=None, coords=Non
                    direction: _kinds.Direction = "descent", close: bool = False, epsilon: float = 0.0,
                    normals: bool | _kinds.Normals | np.ndarray = False, dtype=np.float32, allow_empty: bool = False,
                    threads: int = 0, progress: Progress | None = None, periodic=None,
-                   lattice: _kinds.Lattice | typing.Literal["cubic"] | None = None) -> Facets:
+                   lattice: _kinds.Lattice | typing.Literal["cubic"] | None = None,
+                   division: _kinds.Division | None = None) -> Facets:
     """The contour {value = level} of an array of 2 to 4 axes as facets: points, segments, polygons and polyhedra with their
     incidences, as the grid cuts the contour.
 
@@ -221,14 +227,16 @@ def contour_facets(array, level: float, *, spacing=None, origin=None, coords=Non
                                          epsilon=epsilon, normals=normals, gradient="differences", threads=threads)
     prepared = _prepared_on(lattice, array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                             axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=False)
-    on = _lattice_of(array, lattice) or ""
+    on, simplices = _lattice_of(array, lattice) or "", _arguments.as_text("division", "" if division is None else division)
+    if on and simplices:
+        raise ValueError(f"lattice '{on}' with division; expected one of the two")
     is_double = _arguments.is_double(dtype, prepared)
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     periodic = _periods.given_or_none(periodic)
     with prepared.terms():
         axes, periods = ([], []) if periodic is None else _periods.axes_of(periodic, prepared)
-        core = _tegl.extract_facets(prepared.image, on, axes, periods, level, is_double, options, progress)
+        core = _tegl.extract_facets(prepared.image, on, simplices, axes, periods, level, is_double, options, progress)
     if not allow_empty and not len(core.vertices):
         _outside.require_level(prepared, level)
     return Facets(core, prepared.is_reversed)
@@ -574,7 +582,7 @@ def read(path: Path | Sequence[Path], variable: str = "", *, series: str | None 
     names, units = list(found["names"]), list(found["units"])
     for axis, along, values, name, unit in found["curved"]:
         sizes = [size if along >> a & 1 else 1 for a, size in enumerate(found["array"].shape)]
-        values = np.array(values).reshape(sizes, order="F")
+        values = values.reshape(sizes, order="F")  # a view: coordinates stay side by side
         curved[ndim - 1 - axis if is_reversed else axis] = values.T if is_reversed else values
         names[axis], units[axis] = name or names[axis], unit or units[axis]
     return Image(array=array, coords=coords, axis_names=tuple(names)[turn],
@@ -608,14 +616,6 @@ def _refuse_other_coordinates(curved: list[int], prepared, spacing, origin, coor
     for axis, given in enumerate(coords or []):
         if given is not None and (prepared.ndim - 1 - axis if prepared.is_reversed else axis) in curved:
             raise ValueError(f"coords[{axis}] with a curved grid along this axis; expected None for it")
-
-
-def _warn_of_folds(prepared, of_samples: list, axes: list, periods: list) -> None:
-    cells, first = _tegl.find_folds(prepared.image, of_samples, axes, periods)
-    if cells:
-        at = ", ".join(map(str, first[::-1] if prepared.is_reversed else first))
-        warnings.warn(f"the curved grid is folded in {cells} {'cell' if cells == 1 else 'cells'}, the first at the sample "
-                      f"({at}): the contour may overlap itself there", stacklevel=4)
 
 
 def _path(path) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from . import _arguments, _tegl
+from . import _arguments, _curved, _tegl
 
 
 def given_or_none(periodic: object) -> object:
@@ -16,8 +16,8 @@ def given_or_none(periodic: object) -> object:
 
 
 def axes_of(periodic: object, prepared: _arguments.Prepared,
-            curved: Sequence[tuple[int, int, np.ndarray, str, str]] = ()) -> tuple[list[int], list[float]]:
-    """The library's axes and their periods (NaN: by the samples) of the argument `periodic`; `curved`: of `curved_axes`."""
+            curved: Sequence[_curved.Coordinate] = ()) -> tuple[list[int], list[float]]:
+    """The library's axes and their periods (NaN: by the samples) of the argument `periodic`; `curved`: of `_curved.coordinates_of`."""
     if isinstance(periodic, str) and periodic == "auto":
         found = _tegl.longitude_axes(prepared.image, curved)
         return found, [float("nan")] * len(found)
@@ -42,13 +42,16 @@ def axes_of(periodic: object, prepared: _arguments.Prepared,
 
 
 def _axis(axis: int | str, prepared: _arguments.Prepared,
-          curved: Sequence[tuple[int, int, np.ndarray, str, str]]) -> int:
+          curved: Sequence[_curved.Coordinate]) -> int:
     """The library's axis of a name or number. "lon" and "longitude" also are the axis along which longitudes, by their unit,
-    run around the globe; so is the name of longitudes in an array of several dimensions."""
+    run around the globe, or else the only axis of longitudes; so is the name of longitudes in an array of several dimensions."""
     if not isinstance(axis, str):
         return prepared.library_axis(axis)
     if axis not in prepared.names:
-        found = _tegl.longitude_axes(prepared.image, curved) if axis in ("lon", "longitude") else []
+        is_longitude = axis in ("lon", "longitude")
+        found = _tegl.longitude_axes(prepared.image, curved) if is_longitude else []
+        if is_longitude and len(found) != 1:
+            found = [prepared.library_axis(number) for number, unit in enumerate(prepared.units) if _tegl.is_longitude_unit(unit)]
         return found[0] if len(found) == 1 else prepared.library_axis(axis)
     number = prepared.library_axis(axis)
     for one in curved:

@@ -365,6 +365,25 @@ def test_periods_are_positive_and_finite(period):
             function(values, 0.5, periodic={0: period})
 
 
+def test_longitudes_have_a_period_of_360():
+    def contour(lon, periodic, of=tegl.contour, unit="degrees_east"):
+        values = np.cos(np.radians(lon - 3)) + np.zeros((5, 1))
+        return of(values, 0.5, coords=[np.arange(5.0), lon], axis_names=("lat", "lon"), axis_units=("", unit), periodic=periodic)
+
+    for lon in (np.arange(0, 360, 10.0), np.r_[0:180:10.0, 180:360:5.0], np.arange(0, 350, 10.0), np.arange(-120, 180, 120.0)):
+        for periodic in ("lon", "longitude", 1, ["lon"]):
+            assert contour(lon, periodic).periods.tolist() == [[0, 360]]
+        assert contour(lon, "lon", tegl.count) == contour(lon, {"lon": 360}, tegl.count)
+        assert contour(lon, {"lon": 500.0}).periods.tolist() == [[0, 500]]
+    assert contour(np.arange(0, 350, 10.0), "lon", unit="").periods.tolist() == [[0, 350]]
+    for of in (tegl.contour, tegl.count):
+        with pytest.raises(ValueError, match=r"the period of axis 1 \(lon\), of longitudes, is 360, and is not more than 360, the span"):
+            contour(np.arange(0, 361, 10.0), "lon", of)
+        with pytest.raises(ValueError, match=r"axis 1 \(lon\).* span 30, and the gap behind them is 330; expected less than 180, or a"):
+            contour(np.arange(120, 151, 10.0), "lon", of)
+    assert contour(np.arange(0, 151, 10.0), {"lon": 160.0}).periods.tolist() == [[0, 160]]
+
+
 @pytest.mark.filterwarnings("ignore:the curved grid is folded")  # across latitudes
 def test_longitudes_that_span_360_degrees_are_found():
     lon, lat = np.meshgrid(np.arange(0.0, 360.0, 10.0), np.arange(-40.0, 41.0, 10.0))
@@ -538,3 +557,90 @@ def test_errors_of_functions_for_positions_propagate():
     del function
     gc.collect()
     assert of_function() is None and len(calls) > 1 and all(array() is None for array in calls[1:])
+
+
+# Curved grids.
+
+def curved_image(ndim, dtype=np.float64):
+    """Noise, and coordinates that grow along their own axis by 1 and are moved by waves, as an array of the shape (..., N)."""
+    random = np.random.default_rng(ndim)
+    shape = tuple(range(9, 9 - ndim, -1))
+    index = np.stack(np.meshgrid(*[np.arange(n, dtype=np.float64) for n in shape], indexing="ij"), axis=-1)
+    return random.random(shape), (index + 0.1 * np.sin(index[..., ::-1] + 0.3)).astype(dtype)
+
+
+def same_contours(one, other):
+    return (np.array_equal(one.vertices, other.vertices) and np.array_equal(one.simplices, other.simplices)
+            and one.vertices.dtype == other.vertices.dtype)
+
+
+@pytest.mark.filterwarnings("ignore:the curved grid is folded")  # across the seam
+@pytest.mark.parametrize("ndim", [2, 3, 4])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_curved_points_and_grids_give_the_contours_of_arrays(ndim, dtype):
+    values, points = curved_image(ndim, dtype)
+    for time_axis in (0, -1):
+        for vertex_type in (np.float32, np.float64):
+            given = {"time_axis": time_axis, "dtype": vertex_type}
+            columns = {axis: np.array(points[..., axis], dtype=np.float64) for axis in range(ndim)}
+            expected = tegl.contour(values, 0.5, curved=columns, **given)
+            assert len(expected.simplices) > 50
+            wide = np.concatenate([points, points[..., :2]], axis=-1)
+            turned = np.ascontiguousarray(points.transpose(*range(ndim)[::-1], ndim)).transpose(*range(ndim)[::-1], ndim)
+            for curved in (points, points.astype(points.dtype.newbyteorder()), wide[..., :ndim], turned, points[::-1][::-1],
+                           {axis: np.asfortranarray(points[..., axis]) for axis in range(ndim)}, tegl.CurvedGrid(points),
+                           tegl.CurvedGrid(columns), {axis - ndim: points[..., axis] for axis in range(ndim)}):
+                assert same_contours(tegl.contour(values, 0.5, curved=curved, **given), expected)
+            closed = tegl.contour(values, 0.5, curved=columns, periodic=1, **given)
+            assert same_contours(tegl.contour(values, 0.5, curved=tegl.CurvedGrid(points), periodic=1, **given), closed)
+            assert same_contours(tegl.contour(values, 0.5, curved=points, periodic=1, **given), closed)
+
+
+def test_coordinates_are_read_in_place():
+    from tegl import _arguments, _curved
+    values, points = curved_image(3)
+    in_order = {0: points, -1: np.asfortranarray(points.transpose(3, 0, 1, 2)).transpose(1, 2, 3, 0)}
+    for time_axis, ordered in in_order.items():
+        prepared = _arguments.prepare(values, time_axis=time_axis)
+        for dtype in (np.float32, np.float64):
+            array = np.array(ordered, dtype=dtype)  # strides stay
+            found = _curved.coordinates_of(array, prepared)
+            assert all(np.shares_memory(one[2], array) for one in found), (time_axis, dtype)
+            pitch = array.strides[2 if time_axis == 0 else 0] // array.itemsize
+            assert [one[3] for one in found] == [pitch] * 3
+        assert not any(np.shares_memory(one[2], ordered) for one in _curved.coordinates_of(ordered[::-1], prepared))
+    assert {one[2].dtype for one in _curved.coordinates_of(points.astype(int), _arguments.prepare(values))} == {np.dtype("f8")}
+
+
+def test_curved_grids_are_stored_once_and_warn_of_each_fold():
+    values, points = curved_image(3, np.float32)
+    grid = tegl.CurvedGrid(points.astype(np.float64))
+    assert [one.dtype for one in grid.coordinates.values()] == [np.float32] * 3  # exact
+    assert repr(grid) == "<tegl.CurvedGrid 0: 9 x 8 x 7 float32, 1: 9 x 8 x 7 float32, 2: 9 x 8 x 7 float32>"
+    assert all(np.array_equal(grid.coordinates[axis], points[..., axis]) for axis in range(3))
+    with pytest.raises(ValueError, match="read-only"):
+        grid.coordinates[0][0, 0, 0] = 1
+    points[4] = points[2]
+    folded = tegl.CurvedGrid(points)
+    for curved in (folded, folded, points):
+        with pytest.warns(UserWarning, match=r"folded in 42 cells, the first at the sample \(3, 0, 0\)"):
+            tegl.contour(values, 0.5, curved=curved)
+
+
+def test_bad_curved_points_are_errors():
+    values, points = curved_image(3)
+    with pytest.raises(ValueError, match=r"curved has the shape \(9, 8, 7, 2\); expected \(9, 8, 7, 3\)"):
+        tegl.contour(values, 0.5, curved=points[..., :2])
+    with pytest.raises(ValueError, match=r"curved\[0\] has the shape \(9, 8, 6\); expected \(9, 8, 7\)"):
+        tegl.contour(values, 0.5, curved=points[:, :, :6])
+    with pytest.raises(ValueError, match=r"curved has the shape \(9, 8, 7, 2\); expected \(\.\.\., N\) with N other axes"):
+        tegl.CurvedGrid(points[..., :2])
+    with pytest.raises(TypeError, match="expected a dict of axes and arrays of coordinates, an array"):
+        tegl.CurvedGrid([1, 2])
+    with pytest.raises(TypeError, match="curved are of type <U1; expected real numbers"):
+        tegl.contour(values, 0.5, curved=np.array([["a"]]))
+    with pytest.raises(ValueError, match="have the same curved coordinates"):
+        tegl.contour(values, 0.5, curved={0: points[..., 0], 1: points[..., 0]})
+    points[4, 4, :, 1] = np.nan
+    with pytest.raises(ValueError, match="unknown coordinates; expected missing values there"):
+        tegl.contour(values, 0.5, curved=points)

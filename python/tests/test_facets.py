@@ -194,6 +194,24 @@ def test_facets_of_periodic_lattices_are_closed(lattice, sizes):
         facets.triangulate()
 
 
+@pytest.mark.parametrize("division", ["kuhn", "alternating", "symmetric", "hybrid"])
+def test_facets_of_divisions_are_one_for_each_simplex(division):
+    turn = 2 * np.pi * np.arange(12) / 12
+    array = gyroid(*np.meshgrid(turn, turn, turn, indexing="ij"))
+    facets = tegl.contour_facets(array, 0.01, division=division, periodic="all", normals=True)
+    contour = tegl.contour(array, 0.01, division=division, periodic="all")
+    report = require_lists(facets)
+    assert report.is_closed and report.euler == contour.check().euler == -8
+    assert len(facets.vertices) == len(contour.vertices) and len(facets.normals) == len(facets.vertices)
+    if division != "hybrid":
+        corners = np.diff(facets[2].offsets.astype(int))
+        assert set(corners) == {3, 4} and (corners - 2).sum() == len(contour.simplices)
+    with pytest.raises(ValueError, match="with division; expected one of the two"):
+        tegl.contour_facets(array, 0.01, division=division, lattice="fcc")
+    with pytest.raises(ValueError, match="division is 'cubes'"):
+        tegl.contour_facets(array, 0.01, division="cubes")
+
+
 def tetrahedra_of(n):
     """Points of a cubic grid, and six tetrahedra in each cube."""
     points = np.stack(np.meshgrid(*[np.arange(n)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)

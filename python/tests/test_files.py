@@ -314,6 +314,40 @@ def test_xarrays_keep_the_coordinates_of_a_curved_grid():
         tegl.slice(data, 0.0, at=0.5)
 
 
+def test_xarrays_with_longitude_and_latitude_in_two_dimensions_are_curved():
+    xarray = pytest.importorskip("xarray")
+    lat, lon = np.meshgrid(np.linspace(-60, 60, 20), np.arange(0, 360, 10.0), indexing="ij")
+    lat = lat + 3 * np.sin(np.radians(lon))
+    values = lat - 25 + np.arange(3.0)[:, None, None]
+    stored = (lon + 280) % 360 - 180  # in -180 to 180
+    coords = {"time": ("time", np.arange(3.0), {"units": "s"}), "TLAT": (("j", "i"), lat, {"units": "degrees_north"}),
+              "TLONG": (("j", "i"), stored, {"units": "degrees_east"}), "area": (("j", "i"), lat * 0, {"units": "m2"})}
+    data = xarray.DataArray(values, dims=("time", "j", "i"), coords=coords)
+    names, units = ("time", "TLAT", "TLONG"), ("s", "degrees_north", "degrees_east")
+    curved = {1: lat[None], 2: stored[None]}
+    contour = tegl.contour(data, 0.0)
+    assert contour.axis_names == names and contour.axis_units == units
+    assert_same(contour, tegl.contour(values, 0.0, curved=curved, axis_names=names, axis_units=units))
+    around = tegl.contour(data, 0.0, periodic="auto")
+    assert around.periods.tolist() == [[0, 0, 360]]
+    assert_same(around, tegl.contour(data, 0.0, periodic="TLONG"))
+    # in another order of the dimensions
+    turned = tegl.contour(data.transpose("time", "i", "j"), 0.0)
+    assert turned.axis_names == names and len(turned.vertices) == len(contour.vertices)
+    assert turned.measure().size == pytest.approx(contour.measure().size, rel=1e-3)
+    # dimensions with coordinates, other coordinates by arguments, and indices
+    straight = data.assign_coords(i=np.arange(36) * 2.0, j=np.arange(20) * 1.0)
+    assert tegl.contour(straight, 0.0).axis_names == ("time", "j", "i")
+    other = tegl.contour(data, 0.0, curved={"j": lat[None], "i": lon[None]})
+    assert_same(other, tegl.contour(values, 0.0, curved={1: lat[None], 2: lon[None]}))
+    indices = tegl.contour(data.drop_vars(["TLAT", "TLONG"]), 0.0)
+    assert_same(indices, tegl.contour(values, 0.0))
+    assert_same(tegl.contour(data, 0.0, spacing=1.0), indices)
+    assert tegl.contour(data[:, 14], 2.5).axis_names == ("time", "i")  # no longer in two dimensions
+    with pytest.raises(ValueError, match=r"a curved grid.*expected drop_vars\(\['TLAT', 'TLONG'\]\)"):
+        tegl.slice(data, 0.0, at=0.5)
+
+
 # Other programs.
 
 def test_points_and_cells_are_x_y_z():

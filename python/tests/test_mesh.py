@@ -6,6 +6,7 @@ import itertools
 import numpy as np
 import pytest
 import tegl
+from conftest import assert_same
 
 
 def grid(n, ndim=3):
@@ -575,6 +576,30 @@ def test_curved_grids_are_periodic():
                             axis_names=("lat", "lon"), axis_units=("degrees_north", "degrees_east"), dtype=np.float64)
         assert back.check().is_closed and back.check().components == 1
         assert abs(back.measure().content) == pytest.approx(abs(around.measure().content))
+
+
+def test_longitudes_of_curved_grids_are_continued_across_180_degrees():
+    lat, true = np.meshgrid(np.arange(6) * 10.0, np.arange(36) * 10.0 + 100, indexing="ij")
+    names = {"axis_names": ("lat", "lon"), "axis_units": ("degrees_north", "degrees_east"), "dtype": np.float64}
+    for order, time_axis in (("C", 0), ("F", 0), ("C", -1)):
+        lon = np.array((true + 180) % 360 - 180, order=order)
+        given = lon.copy()
+        lon.flags.writeable = False
+        for periodic in (None, "lon", "auto", {"lon": 360}):
+            line = tegl.contour(lat - 25, -3.0, curved={0: lat, 1: lon}, periodic=periodic, time_axis=time_axis, **names)
+            expected = tegl.contour(lat - 25, -3.0, curved={0: lat, 1: true}, periodic=periodic, time_axis=time_axis, **names)
+            assert_same(line, expected)
+            assert line.measure().size == pytest.approx(350 if periodic is None else 360)
+            assert line.periods.tolist() == ([] if periodic is None else [[0, 360]])
+        assert np.array_equal(lon, given), "the caller's array stays as it is"
+    land = np.zeros(lat.shape, bool)
+    land[:, 0] = land[2, 3:28] = True
+    masked = {0: np.where(land, np.nan, lat), 1: np.where(land, np.nan, (true + 180) % 360 - 180)}
+    line = tegl.contour(np.where(land, np.nan, true - 300), -3.0, curved=masked, **names)
+    assert np.allclose(line.vertices[:, 1], 297) and len(line.vertices) > 1
+    with pytest.warns(UserWarning, match="the curved grid is folded in 5 cells"):
+        plain = tegl.contour(lat - 25, -3.0, curved={0: lat, 1: given}, axis_names=("lat", "lon"), dtype=np.float64)
+    assert plain.vertices[:, 1].max() < 180, "other units are not continued"
 
 
 def test_count_has_the_size_of_contours_of_meshes_lattices_and_divisions():

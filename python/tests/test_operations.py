@@ -622,6 +622,25 @@ def test_picking_gives_the_component_at_a_point(moving_balls):
         index.pick((0, 0), 0.0)
 
 
+def test_the_nearest_component_of_any_contour(moving_balls):
+    lattice = tegl.contour(moving_balls[0], 0.0, lattice="fcc", spacing=(0.5**0.5, 1, 1))
+    parts = lattice.components()
+    assert len(parts) == 2
+    for label, one in enumerate(parts):
+        assert parts.nearest(one.centroid) == label
+        assert_same(parts.select(parts.nearest(one.centroid)), parts.split()[label])
+    # a long step makes distances along its axis short
+    segments = tegl.contour(np.array([[0, 0, 0, 0], [1, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 1]], dtype=float), 0.5)
+    both = segments.components()
+    assert [both.nearest((1, 1.9), steps=steps) for steps in (1, (9, 1))] == [0, 1]
+    with pytest.raises(ValueError, match="3 numbers; expected one for each of 2 axes"):
+        both.nearest((1, 2, 3))
+    with pytest.raises(ValueError, match="steps above 0"):
+        both.nearest((1, 2), steps=0)
+    with pytest.raises(ValueError, match="the contour is empty"):
+        tegl.contour(moving_balls[0], 99.0, allow_empty=True).components().nearest((0, 0, 0))
+
+
 def test_whatever_is_cut_open_is_open_at_the_border_alone():
     contour = tegl.contour(noise((6, 7, 8, 5), 1), 0.0)
     cut = contour.slice(2.5)

@@ -248,5 +248,46 @@ TEST_F(FacetsCommand, FacetsOfPeriodicLatticesAreClosedAcrossTheSeam) {
   }
 }
 
+TEST_F(FacetsCommand, FacetsOfDivisionsAreThoseOfSimplices) {
+  const std::string file = write("noise.nrrd", nrrd_bytes(noise({8, 6, 5}, 3)));
+  for (const char* const division : {"kuhn", "alternating", "symmetric", "hybrid"}) {
+    const nlohmann::json facets = contour({file, "--iso", "0.5", "--division", division, "--facets", "--close",
+                                           "--periodic", "x", "-o", path("facets.vtu")});
+    const nlohmann::json simplices =
+        contour({file, "--iso", "0.5", "--division", division, "--close", "--periodic", "x", "-o", path("s.vtkhdf")});
+    for (const char* const key : {"euler", "components", "tiles", "active_tiles"})
+      EXPECT_EQ(facets[key], simplices[key]) << division << " " << key;
+    EXPECT_EQ(facets["boundary_facets"], 0);
+  }
+}
+
+TEST_F(FacetsCommand, OfSeveralIsovaluesAreThoseOfEach) {
+  const std::string file = write("noise.nrrd", nrrd_bytes(noise({7, 6, 8}, 3)));
+  const std::vector<std::vector<std::string>> tilings = {{"--lattice", "fcc"}, {"--division", "symmetric"}, {}};
+  const auto read = [&](const std::string& name) {
+    std::ifstream stream(path(name), std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  for (const std::vector<std::string>& tiling : tilings) {
+    std::vector<std::string> several = {"contour",  file,     "--iso", "0.4,0.6",
+                                        "--facets", "--json", "-o",    path("of_{iso}.vtu")};
+    several.insert(several.end(), tiling.begin(), tiling.end());
+    const RunResult run = run_tegl(several);
+    ASSERT_EQ(run.exit, 0) << run.err;
+    const nlohmann::json results = run.json();
+    ASSERT_EQ(results.size(), 2u);
+    for (const std::size_t i : {0u, 1u}) {
+      const std::string iso = i == 0 ? "0.4" : "0.6";
+      std::vector<std::string> one = {file, "--iso", iso, "--facets", "-o", path("one.vtu")};
+      one.insert(one.end(), tiling.begin(), tiling.end());
+      const nlohmann::json expected = contour(one);
+      for (const char* const key : {"facets", "isovalue", "euler", "tiles", "active_tiles"})
+        EXPECT_EQ(results[i][key], expected[key]) << key;
+      EXPECT_FALSE(read("one.vtu").empty());
+      EXPECT_EQ(read("of_" + iso + ".vtu"), read("one.vtu"));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tegl::test

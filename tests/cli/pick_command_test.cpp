@@ -76,5 +76,80 @@ TEST_F(Pick, RefusesWrongUsage) {
   EXPECT_THAT(indexed.err, HasSubstr("--pick with --index"));
 }
 
+/// On a lattice the whole contour is made.
+class PickOnALattice : public Pick {
+ protected:
+  RunResult whole(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"contour", file(), "--iso", "0", "-o", path("whole.ply"), "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_tegl(arguments);
+  }
+};
+
+TEST_F(PickOnALattice, IsTheNearerOfTwo) {
+  for (const std::string lattice : {"fcc", "bcc"}) {
+    const nlohmann::json all = whole({"--lattice", lattice}).json();
+    ASSERT_EQ(all["components"], 2);
+    const RunResult left = pick("9,9.5,9.5", {"--lattice", lattice, "--json"});
+    ASSERT_EQ(left.exit, 0) << left.err;
+    EXPECT_EQ(left.json()["components"], 1);
+    EXPECT_EQ(left.json()["euler"], 2);
+    EXPECT_EQ(left.json()["pick"]["components"], 2);
+    EXPECT_TRUE(left.json()["pick"]["tile"].is_null());
+    EXPECT_TRUE(left.json()["pick"]["tiles"].is_null());
+    EXPECT_GT(left.json()["pick"]["distance"], 2.0);
+    const RunResult right = pick("39.5,0,0", {"--lattice", lattice, "--json"});
+    ASSERT_EQ(right.exit, 0) << right.err;
+    EXPECT_EQ(left.json()["simplices"].get<int>() + right.json()["simplices"].get<int>(), all["simplices"]);
+    EXPECT_GT(right.json()["simplices"], left.json()["simplices"]);
+  }
+  const RunResult run = pick("9,9.5,9.5", {"--lattice", "fcc", "--close", "--precision", "float"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("picked       (9, 9.5, 9.5): the nearest vertex is "));
+  EXPECT_THAT(run.out, HasSubstr("1 of 2 components"));
+}
+
+TEST_F(PickOnALattice, HasAttributesAndNormals) {
+  const RunResult left =
+      pick("9,9.5,9.5", {"--lattice", "fcc", "--normals", "gradient", "--attribute", file(), "--json"});
+  ASSERT_EQ(left.exit, 0) << left.err;
+  EXPECT_EQ(left.json()["components"], 1);
+  const nlohmann::json info = run_tegl({"info", path("one.ply"), "--json"}).json();
+  EXPECT_EQ(info["vertices"], left.json()["vertices"]);
+  EXPECT_THAT(info.dump(), HasSubstr("normals"));
+}
+
+TEST_F(PickOnALattice, IsNearestModuloThePeriod) {
+  // x = 41 is x = 1: nearer to the left ball
+  const std::vector<std::string> periodic = {"--lattice", "fcc", "--periodic", "x", "--json"};
+  const RunResult left = pick("41,9.5,9.5", periodic), right = pick("37,9.5,9.5", periodic);
+  ASSERT_EQ(left.exit, 0) << left.err;
+  ASSERT_EQ(right.exit, 0) << right.err;
+  EXPECT_LT(left.json()["simplices"], right.json()["simplices"]);
+  EXPECT_EQ(left.json()["pick"]["point"], nlohmann::json({41.0, 9.5, 9.5}));
+}
+
+TEST_F(PickOnALattice, OfAFileIsMeasuredInItsSteps) {
+  // a layer is sqrt(2) / 2 away
+  ASSERT_EQ(run_tegl({"sample", "x^2 + y^2 + z^2", "--lattice", "fcc", "--size", "20", "--range", "-2:2", "-o",
+                      path("ball.nrrd")})
+                .exit,
+            0);
+  const RunResult run =
+      run_tegl({"contour", path("ball.nrrd"), "--iso", "1", "--pick", "0,0,0", "-o", path("b.ply"), "--json"});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_NEAR(run.json()["pick"]["distance"].get<double>(), 19.0 / 4.0, 0.2);
+}
+
+TEST_F(PickOnALattice, RefusesPointsOutside) {
+  const RunResult outside = pick("9,9,20", {"--lattice", "fcc"});
+  EXPECT_EQ(outside.exit, 2);
+  EXPECT_THAT(outside.err,
+              HasSubstr("(9, 9, 20) is not in the image; expected one from (0, 0, 0) to (39.5, 19.5, 19)"));
+  EXPECT_EQ(pick("9,9", {"--lattice", "fcc"}).exit, 2);
+  EXPECT_EQ(pick("9,9,9", {"--lattice", "fcc", "--index", file()}).exit, 2);
+  EXPECT_EQ(pick("9,9,9", {"--lattice", "fcc", "--stream"}).exit, 2);
+}
+
 }  // namespace
 }  // namespace tegl::test

@@ -342,6 +342,26 @@ TEST(Facets, OfAPeriodicLatticeAreClosed) {
   // [/facets_of_a_lattice]
   EXPECT_GT(closed.count(2), 0u);
   EXPECT_EQ(tegl::check(closed).border, 0u);
+  // [facets_of_a_division]
+  // Triangles and quadrilaterals, with the numbers of their tetrahedra in `levels[2].places`
+  const auto in_simplices = tegl::extract_facets<double>(samples.view(), tegl::Division::kuhn, 0.0);
+  // [/facets_of_a_division]
+  EXPECT_EQ(in_simplices.cells, 6u * 3u * 4u * 5u);
+  EXPECT_GT(in_simplices.count(2), 0u);
+}
+
+TEST(Components, TheNearestToAPoint) {
+  const std::vector<float> values = volume_at(0);
+  const tegl::Contour<3> surface =
+      tegl::extract(tegl::Image<float, 3>(values.data(), tegl::Grid<3>::unit({kSize, kSize, kSize})), 0.0);
+  const std::array<double, 3> point = {1, 2, 3};
+  // [nearest_component]
+  const tegl::ComponentLabels labels = tegl::label_components(surface);
+  std::vector<bool> keep(labels.count);
+  keep.at(tegl::nearest_component(surface, labels, point).label) = true;
+  const tegl::Contour<3> nearest = tegl::select_components(surface, labels, keep);
+  // [/nearest_component]
+  EXPECT_EQ(nearest.simplices.size(), surface.simplices.size());
 }
 
 }  // namespace

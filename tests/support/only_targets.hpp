@@ -3,6 +3,7 @@
 // Restricts the library to some instruction sets, for tests that compare them. The test must link hwy::hwy.
 #pragma once
 
+#include <gtest/gtest.h>
 #include <hwy/targets.h>
 
 #include <cstdint>
@@ -23,5 +24,15 @@ class OnlyTargets {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   }
 };
+
+/// Calls test() with each instruction set, the best one first.
+template <class Test>
+void with_all_targets(const Test& test) {
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    const OnlyTargets only(target);
+    test();
+  }
+}
 
 }  // namespace tegl::test

@@ -302,12 +302,14 @@ class ContourCommand final : public Command {
     if (!tiling_.curved.empty()) return make_curved(image, options, bar, result);
     if (tiling_.of_cells) result.wording.no_size = "cells touch; --merge drops most of them";
     if (placed_.rule == Positions::filtered) result.wording.no_size = PositionArguments::kNoSize;
-    if (result.picked) return pick(image, options, bar, result);
+    if (result.picked && !tiling_.lattice) return pick(image, options, bar, result);
     const auto finished = [&](auto extraction) {
       result.stats = extraction.stats;
-      if (tiling_.lattice)
+      if (tiling_.lattice) {
         sample_on_lattice(given_.attributes, extraction.contour, image, tiling_, result.isovalue_of_samples, options,
                           image_options(), bar);
+        if (result.picked) extraction.contour = picked_on_lattice(image, extraction.contour, result);
+      }
       return with_additions(std::move(extraction.contour), options.work.threads, bar, result);
     };
     const bool single_precision = given_.extraction.single_precision();
@@ -383,6 +385,19 @@ class ContourCommand final : public Command {
     };
     std::visit([&](const auto& typed) { std::visit(of_owned, typed); }, image);
     result.seconds.generate += watch.lap();
+  }
+
+  /// The component of the whole contour of an image on a lattice nearest to the point of --pick.
+  template <int N, class Real>
+  [[nodiscard]] Contour<N, Real> picked_on_lattice(const AnyImage& image, const Contour<N, Real>& contour,
+                                                   ContourResult& result) const {
+    const std::array<double, N> point = picked_place<N>(*result.picked, given_.pick);
+    return std::visit(
+        [&](const auto& owned) {
+          return pick_on_lattice<N>(contour, owned.grid, *tiling_.lattice, point, *result.picked,
+                                    given_.extraction.threads());
+        },
+        std::get<N - 2>(image));
   }
 
   /// The mesh of a contour with the normals and attributes of --normals and --attribute; merged (--merge) or unrolled
@@ -473,12 +488,11 @@ class ContourCommand final : public Command {
     remark(take_longitudes(input.image, given_.extraction, tiling));
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
-    for (FacetsResult& result : results)
-      write_image_facets(
-          input.image,
-          {result.isovalue, options, given_.extraction.single_precision(), given_.no_check,
-           given_.compress.compression(), tiling.periodic, given_.extraction.allows_empty(), tiling.lattice},
-          bar, result, written);
+    write_image_facets(
+        input.image,
+        {0.0, options, given_.extraction.single_precision(), given_.no_check, given_.compress.compression(),
+         tiling.periodic, given_.extraction.allows_empty(), tiling.lattice, tiling.division},
+        bar, results, written);
     written.keep();
     bar.clear();
     for (const FacetsResult& result : results)

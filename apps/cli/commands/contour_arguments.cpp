@@ -14,6 +14,14 @@
 #include "input/cuts.hpp"
 
 namespace tegl::cli {
+namespace {
+
+constexpr const char* kPick = "--pick";
+
+/// Whether an option of images with plain cells is also one of images on lattices.
+bool knows_lattices(std::string_view option) { return option == kFacets || option == kPick; }
+
+}  // namespace
 
 void ContourArguments::add_to(CLI::App& app, const ImageOptions& images) {
   app_ = &app;
@@ -98,7 +106,7 @@ void ContourArguments::for_plain_cells(const Refuse& refuse) const {
   if (is_streamed()) refuse(stream ? "--stream" : "--raw and a .vtkhdf output, which is streamed");
   if (!index.empty()) refuse("--index");
   if (facets) refuse(kFacets);
-  if (picks()) refuse("--pick");
+  if (picks()) refuse(kPick);
   if (one_file) refuse("--one-file");
   if (extraction.polygon_triangulation()) refuse("a triangulation of polygons");
 }
@@ -111,7 +119,8 @@ void ContourArguments::require_tiling() const {
                 fmt::format("--unroll with {}; expected one of the two", facets ? "--facets" : "--stream"));
   for_plain_cells([&](const char* with) {
     if (is_streamed() && extraction.tiling().lattice) return;
-    if (with == std::string_view(kFacets) && extraction.tiling().lattice) return;
+    if (knows_lattices(with) && extraction.tiling().lattice) return;
+    if (with == std::string_view(kFacets) && extraction.tiling().division) return;
     is_streamed() || facets ? extraction.refuse_other_tiling(with) : extraction.refuse_tiling(with);
   });
   if (attributes.wanted() && extraction.tiling().of_cells) extraction.refuse_tiling("--attribute");
@@ -171,7 +180,7 @@ void ContourArguments::require_to_5d() const {
 void ContourArguments::refuse_tiling_of_file(const ImageInfo& info, const std::string& file) const {
   for_plain_cells([&](const char* with) {
     extraction.refuse_cells(info.samples_are_cells, file, with);
-    if (!is_streamed() && with != std::string_view(kFacets)) extraction.refuse_lattice(info, file, with);
+    if (!is_streamed() && !knows_lattices(with)) extraction.refuse_lattice(info, file, with);
   });
   if (attributes.wanted()) extraction.refuse_cells(info.samples_are_cells, file, "--attribute");
   if (!positions.are_linear()) extraction.refuse_lattice(info, file, "--positions");

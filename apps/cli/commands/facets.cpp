@@ -73,18 +73,24 @@ ExtractStats stats_of(const FacetHierarchy<N, Real>& facets, std::uint64_t tiles
   return stats;
 }
 
-/// Extracts the facets of an image and passes them to `use`, with the number of tiles.
-template <class Result, class T, int N, class Use>
-Result use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const ExtractOptions& options,
-                  const Use& use) {
+/// Extracts the facets of an image at the isovalues one after the other and passes them to use(i, facets, number of
+/// tiles).
+template <class T, int N, class Use>
+void use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const std::vector<double>& isovalues,
+                const ExtractOptions& options, const Use& use) {
   const AxisPeriods<N> periods = periods_of(image.grid, work.periodic);
-  const auto extracted = [&]<class Real>(Real) -> Result {
-    if (!work.lattice)
-      return use(extract_facets<Real>(image.view(), work.isovalue, options, periods), tiles_of(image.grid, periods));
-    const auto facets = extract_facets<Real>(image.view(), *work.lattice, work.isovalue, options, periods);
-    return use(facets, facets.cells);
+  const auto extract_all = [&]<class Real>(Real) {
+    const auto use_of_cells = [&](std::size_t i, const FacetHierarchy<N, Real>& facets) {
+      use(i, facets, facets.cells);
+    };
+    if (work.lattice)
+      return extract_facets_several<Real>(image.view(), *work.lattice, isovalues, use_of_cells, options, periods);
+    if (work.division)
+      return extract_facets_several<Real>(image.view(), *work.division, isovalues, use_of_cells, options, periods);
+    for (std::size_t i = 0; i < isovalues.size(); ++i)
+      use(i, extract_facets<Real>(image.view(), isovalues[i], options, periods), tiles_of(image.grid, periods));
   };
-  return work.single_precision ? extracted(float{}) : extracted(double{});
+  work.single_precision ? extract_all(float{}) : extract_all(double{});
 }
 
 template <int N, class Real>
@@ -211,19 +217,23 @@ void require_output_holds_facets(const fs::path& output, int image_dim) {
                                     output.extension().string()));
 }
 
-void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
-                        WrittenFiles& written) {
+void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar,
+                        std::vector<FacetsResult>& results, WrittenFiles& written) {
   ExtractOptions options = work.options;
   options.work.progress = bar.stage("facets");
+  std::vector<double> isovalues;
+  for (const FacetsResult& result : results) isovalues.push_back(result.isovalue);
   Stopwatch watch;
-  const auto finish = [&](const auto& facets, std::uint64_t tiles) {
+  const auto finish = [&](std::size_t i, const auto& facets, std::uint64_t tiles) {
+    FacetsResult& result = results[i];
     result.seconds.generate = watch.lap();
     result.stats = stats_of(facets, tiles, result.seconds.generate);
     check_and_write(facets, work, bar, result, written);
+    (void)watch.lap();
   };
   std::visit(
       [&](const auto& typed) {
-        std::visit([&](const auto& owned) { use_facets<void>(owned, work, options, finish); }, typed);
+        std::visit([&](const auto& owned) { use_facets(owned, work, isovalues, options, finish); }, typed);
       },
       image);
 }
@@ -271,12 +281,13 @@ std::variant<Extraction<3, float>, Extraction<3, double>> triangulated_polygons(
   ExtractOptions options = work.options;
   options.work.progress = bar.stage("facets");
   Stopwatch watch;
-  const auto triangulated = [&]<class Real>(const FacetHierarchy<3, Real>& facets, std::uint64_t tiles) -> Triangles {
+  Triangles triangles;
+  const auto triangulated = [&]<class Real>(std::size_t, const FacetHierarchy<3, Real>& facets, std::uint64_t tiles) {
     auto contour = triangulate(facets, method, {work.options.work.threads, bar.stage("triangles")});
-    return Extraction<3, Real>{std::move(contour), stats_of(facets, tiles, watch.lap())};
+    triangles = Extraction<3, Real>{std::move(contour), stats_of(facets, tiles, watch.lap())};
   };
-  return std::visit([&](const auto& owned) { return use_facets<Triangles>(owned, work, options, triangulated); },
-                    *typed);
+  std::visit([&](const auto& owned) { use_facets(owned, work, {work.isovalue}, options, triangulated); }, *typed);
+  return triangles;
 }
 
 }  // namespace tegl::cli

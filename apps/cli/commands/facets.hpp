@@ -63,12 +63,13 @@ struct FacetsWork {
   std::vector<std::string> periodic = {};  ///< the axes of --periodic
   bool allows_empty = false;               ///< of meshes
   std::optional<Lattice> lattice = {};     ///< on which the samples of an image are
+  std::optional<Division> division = {};   ///< of an image's cells
 };
 
-/// Extracts the facets of an image, checks them and writes them to result.output, one of `written`; fills the rest of
-/// the result.
-void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar, FacetsResult& result,
-                        WrittenFiles& written);
+/// Extracts the facets of an image at the isovalues of the results, checks them and writes them to the results'
+/// outputs, which are `written`; fills the rest of the results. `work.isovalue` is not read.
+void write_image_facets(const AnyImage& image, const FacetsWork& work, ProgressBar& bar,
+                        std::vector<FacetsResult>& results, WrittenFiles& written);
 
 /// The same for a mesh of cells, which was read in this time, and several isovalues with a file for each. Throws
 /// WriteFailed for 4D facets and a file that cannot hold them, and EmptyResult.

@@ -52,9 +52,9 @@ Contour<N, double> widened(Contour<N, Real> contour) {
 /// The range of a curved coordinate.
 CutAxis cut_axis_of(const CurvedAxis& one) {
   CutAxis axis{one.name, std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const double x : one.values) {
-    axis.first = std::fmin(axis.first, x);
-    axis.last = std::fmax(axis.last, x);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    axis.first = std::fmin(axis.first, one[i]);
+    axis.last = std::fmax(axis.last, one[i]);
   }
   return axis;
 }
@@ -84,9 +84,20 @@ std::vector<std::string> take_grid(ReadImageResult& input, const std::string& fi
   return {remark, std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, input.image)};
 }
 
-CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved) {
+CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved,
+                  const std::vector<std::string>& periodic) {
   CutSpace space = space_of(image);
   for (const CurvedAxis& one : curved) space.axes[static_cast<std::size_t>(one.axis)] = cut_axis_of(one);
+  if (curved.empty() || periodic.empty()) return space;
+  const auto take_periods = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+    const std::vector<CurvedSeam<N>> seams = seams_of(owned.grid, curved, periodic);
+    for (std::size_t a = 0; a < N; ++a) {
+      std::vector<double> along;
+      for (const CurvedSeam<N>& seam : seams) along.push_back(seam.vector[a]);
+      (void)take_period(space.axes[a], along);
+    }
+  };
+  std::visit([&](const auto& typed) { std::visit(take_periods, typed); }, image);
   return space;
 }
 
@@ -117,11 +128,11 @@ CutSpace space_of_longer(const OwnedImage<T, N>& owned, const std::vector<std::s
     if (is_longer[a]) axis = with_repeated_sample(axis, periods[a]);
   }
   CutSpace space = space_of(grid);
-  // a coordinate is modulo the period if it depends on one axis of the image only
   for (std::size_t a = 0; a < N; ++a) {
-    bool is_own = is_longer[a];
-    for (std::size_t b = 0; b < N; ++b) is_own = is_own && (b == a || grid.linear[a][b] == 0.0);
-    if (is_own) space.axes[a].period = space.axes[a].last - space.axes[a].first;
+    std::vector<double> along;
+    for (std::size_t b = 0; b < N; ++b)
+      if (is_longer[b]) along.push_back(grid.linear[a][b] * periods[b]);
+    (void)take_period(space.axes[a], along);
   }
   return space;
 }

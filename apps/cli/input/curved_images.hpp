@@ -36,7 +36,7 @@ std::array<double, N> nearest_sample(const Grid<N>& grid, std::span<const Curved
     std::size_t at = 0;
     for (std::size_t a = N; a-- > 0;)
       if ((one->along >> a & 1u) != 0) at = at * grid.axes[a].size() + index[a];
-    return one->values[at];
+    return (*one)[at];
   };
   std::array<double, N> scale;
   for (std::size_t a = 0; a < N; ++a) {
@@ -44,8 +44,8 @@ std::array<double, N> nearest_sample(const Grid<N>& grid, std::span<const Curved
     double low = axis[0], high = axis[axis.size() - 1];
     if (curved_at[a] != nullptr) low = high = std::numeric_limits<double>::quiet_NaN();
     if (curved_at[a] != nullptr)
-      for (const double x : curved_at[a]->values)
-        if (std::isfinite(x)) low = std::fmin(low, x), high = std::fmax(high, x);
+      for (std::size_t i = 0; i < curved_at[a]->size(); ++i)
+        if (const double x = (*curved_at[a])[i]; std::isfinite(x)) low = std::fmin(low, x), high = std::fmax(high, x);
     scale[a] = high != low ? 1.0 / (high - low) : 1.0;
   }
   double least = std::numeric_limits<double>::infinity();

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -91,9 +92,9 @@ void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> wi
   without_periods_ = std::move(without_periods);
   options_.push_back(add_word_list(app, "--periodic", periodic_,
                                    "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
-                                   "longitude, by its unit; or all; the period is the number of samples x the step, "
-                                   "or as in lon=360; auto: longitudes that span 360 degrees; none: no axis, and no "
-                                   "remark on such longitudes")
+                                   "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
+                                   "for longitudes, or as in x=2.5; auto: longitudes that span 360 degrees; none: no "
+                                   "axis, and no remark on such longitudes")
                          ->type_name("AXES"));
   options_.push_back(app.add_option("--lattice", lattice_,
                                     "samples on a staggered lattice: odd layers are shifted by half a step along the "
@@ -171,6 +172,27 @@ bool ExtractionOptions::knows_periods(const Tiling& tiling) const {
   });
 }
 
+namespace {
+
+/// The end of the remark that no longitudes span 360 degrees: the reason, if there are longitudes.
+template <int N>
+std::string hint_on_longitudes(const Grid<N>& grid, const std::vector<CurvedAxis>& curved) {
+  constexpr std::string_view kEnd = ", so no axis is periodic";
+  for (const CurvedAxis& one : curved)
+    if (is_longitude_unit(one.unit))
+      return fmt::format(
+          "{}: the step behind the last sample is not 0.5 to 1.5 mean steps in each row; if they run around the globe, "
+          "--periodic {} makes the axis periodic",
+          kEnd, one.name);
+  for (std::size_t a = 0; a < N; ++a)
+    if (is_longitude_unit(grid.axes[a].unit))
+      return fmt::format(" in even steps{}; if they run around the globe, --periodic {} makes the axis periodic", kEnd,
+                         axis_label(grid.axes[a].name, a));
+  return std::string(kEnd);
+}
+
+}  // namespace
+
 template <int N>
 std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tiling) const {
   const bool finds = finds_longitudes();
@@ -184,7 +206,7 @@ std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tili
   const std::string list = fmt::format("{}", fmt::join(names, ","));
   if (finds) {
     tiling.periodic = std::move(names);
-    return list.empty() ? "--periodic auto: no longitudes span 360 degrees, so no axis is periodic"
+    return list.empty() ? "--periodic auto: no longitudes span 360 degrees" + hint_on_longitudes<N>(grid, tiling.curved)
                         : list + " spans 360 degrees, so it is periodic";
   }
   if (list.empty()) return "";
@@ -362,32 +384,25 @@ struct NamedPeriod {
   std::optional<double> period;
 };
 
-/// Whether a unit is one of longitudes, as in `longitude_periods`.
-bool is_longitude_unit(const std::string& unit) {
-  Grid<2> around = Grid<2>::unit({4, 2});
-  around.axes[0] = Axis::uniform(4, 0.0, 90.0);
-  around.axes[0].unit = unit;
-  return longitude_periods(around)[0] != 0.0;
-}
-
 /// An axis as --periodic may name it.
 struct AxisNames {
   std::vector<std::string> names;  ///< its own, or its letter, and that of its curved coordinate
   bool is_longitude = false;       ///< has longitudes, by their unit
 };
 
-/// The axis of this name, or else, if only one axis has longitudes, that one for lon and longitude, or else the axis of
-/// the letter x, y, z or t; axes.size() if there is none.
-std::size_t axis_named(const std::string& name, const std::vector<AxisNames>& axes) {
+/// The axis that a name of --periodic stands for: the one of this name, or else, if only one axis has longitudes, that
+/// one for lon and longitude, or else the axis of the letter x, y, z, t or u; axes.size() if there is none.
+std::size_t axis_of_period(const std::string& name, const std::vector<AxisNames>& axes) {
   const auto is_name = [&](const std::string& one) { return equal_ignoring_case(one, name); };
-  for (std::size_t a = 0; a < axes.size(); ++a)
+  std::vector<std::string> letters;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
     if (std::any_of(axes[a].names.begin(), axes[a].names.end(), is_name)) return a;
+    letters.push_back(axis_label("", a));
+  }
   const auto has_longitudes = [](const AxisNames& axis) { return axis.is_longitude; };
   if ((is_name("lon") || is_name("longitude")) && std::count_if(axes.begin(), axes.end(), has_longitudes) == 1)
     return static_cast<std::size_t>(std::find_if(axes.begin(), axes.end(), has_longitudes) - axes.begin());
-  std::size_t a = 0;
-  while (a < axes.size() && !is_name(axis_label("", a))) ++a;
-  return a;
+  return axis_called(name, letters);
 }
 
 [[noreturn]] void fail_to_name(const std::string& name, const std::vector<AxisNames>& axes) {
@@ -412,7 +427,7 @@ std::vector<NamedPeriod> named_periods(const std::vector<AxisNames>& axes, const
   for (const std::string& name : names) {
     const std::size_t equal = name.find('=');
     const std::string own = name.substr(0, equal);
-    const std::size_t named = axis_named(own, axes);
+    const std::size_t named = axis_of_period(own, axes);
     const bool is_all = named == axes.size() && name == "all";
     if (named == axes.size() && !is_all) fail_to_name(name, axes);
     for (std::size_t a = is_all ? 0 : named; a < (is_all ? axes.size() : named + 1); ++a) {
@@ -459,12 +474,9 @@ std::vector<int> axes_of_names(const Grid<N>& grid, const std::vector<CurvedAxis
 template <int N>
 AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names) {
   AxisPeriods<N> periods{};
-  const AxisPeriods<N> longitudes = longitude_periods(grid);
   for (const NamedPeriod& one : named_periods(names_of_axes(grid), names)) {
     const auto axis = static_cast<std::size_t>(one.axis);
-    periods[axis] = one.period                ? *one.period
-                    : longitudes[axis] != 0.0 ? longitudes[axis]
-                                              : sample_periods(grid, std::span(&one.axis, 1))[axis];
+    periods[axis] = one.period ? *one.period : default_periods(grid, std::span(&one.axis, 1))[axis];
   }
   return periods;
 }

@@ -213,22 +213,10 @@ Contour<N, Real> unrolled_for(Contour<N, Real> contour, const std::string& outpu
   return std::move(result.contour);
 }
 
-/// Whether a hyperplane crosses a period of a wrapped contour, which must be unrolled before it is cut there.
-template <int N, class Real>
-bool crosses_period(const Contour<N, Real>& contour, const Hyperplane<N>& cut) {
-  return std::any_of(contour.periods.begin(), contour.periods.end(), [&](const Period<N>& period) {
-    double along = 0, size = 0;
-    for (int a = 0; a < N; ++a) {
-      along += period.vector[a] * cut.normal[a];
-      size += std::abs(period.vector[a] * cut.normal[a]);
-    }
-    return std::abs(along) > 1e-9 * size;
-  });
-}
-
-/// The remark on cuts that cross a period.
+/// The remark on cuts across periods for which a wrapped contour is unrolled.
 inline constexpr const char* kUnrolledForCuts =
-    "the contour is unrolled for cuts across a period: it ends at both ends of its periodic axes";
+    "the contour is unrolled for cuts across a period that are oblique or cross several: it ends at both ends of its "
+    "periodic axes";
 
 /// Extracts the contour of an image whose cells are divided and passes it to `use`, as extract_and_use.
 template <class Result, class T, int N, class Use>

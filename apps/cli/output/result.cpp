@@ -242,9 +242,9 @@ Json to_json(const ContourResult& result) {
   json["pick"] = nullptr;
   if (result.picked)
     json["pick"] = {{"point", result.picked->point},
-                    {"tile", result.picked->tile},
+                    {"tile", result.picked->tile.empty() ? Json(nullptr) : Json(result.picked->tile)},
                     {"distance", result.picked->distance},
-                    {"tiles", result.picked->tiles},
+                    {"tiles", result.picked->tile.empty() ? Json(nullptr) : Json(result.picked->tiles)},
                     {"components", result.picked->components}};
   // mesh and times
   add_check_keys(json, result.size(), result.report);
@@ -272,7 +272,12 @@ std::string to_text(const Console& console, const ContourResult& result) {
   std::string text = fmt::format("{}\n", console.bold(what));
   // input and pick
   text += input_line(result.input, result.variable);
-  if (result.picked) {
+  if (result.picked && result.picked->tile.empty()) {
+    const Picked& picked = *result.picked;
+    text += report_line("picked", fmt::format("({}): the nearest vertex is {} steps away",
+                                              fmt::join(picked.point, ", "), number(picked.distance)));
+    text += report_line("", fmt::format("1 of {}", counted(picked.components, "component", "components")));
+  } else if (result.picked) {
     const Picked& picked = *result.picked;
     text += report_line(
         "picked", fmt::format("({}): tile ({}), {}", fmt::join(picked.point, ", "), fmt::join(picked.tile, ", "),

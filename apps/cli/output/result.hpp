@@ -104,10 +104,10 @@ struct Cut {
 /// The result of --pick.
 struct Picked {
   std::vector<double> point;
-  std::vector<std::size_t> tile;  ///< index of the nearest active tile
-  double distance = 0;            ///< distance to the tile in grid steps
+  std::vector<std::size_t> tile;  ///< index of the nearest active tile; empty if the whole contour was made
+  double distance = 0;            ///< distance to the tile, or to the nearest vertex, in grid steps
   std::uint64_t tiles = 0;        ///< tiles reached from it
-  std::uint64_t components = 0;   ///< components in those tiles
+  std::uint64_t components = 0;   ///< components in those tiles, or of the whole contour
 };
 
 /// Wall-clock seconds of each stage; 0 for stages that were not run.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "tegl/contour.hpp"
@@ -93,6 +94,34 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Contour<N, Real> select_components(const Contour<N, Real>& contour, const ComponentLabels& labels,
                                                  const std::vector<bool>& keep, const WorkOptions& work = {});
+
+/// The component nearest to a point.
+struct NearestComponent {
+  Index label = kNoComponent;  ///< kNoComponent for a contour without simplices
+  double distance = 0.0;       ///< from the point to the nearest vertex of the component
+};
+
+/// The component with the vertex nearest to a point: of equally near vertices, the one with the smallest number.
+/// Differences of coordinates are divided by `steps`, by axis, as axes may have different units; `steps` are positive.
+/// A wrapped contour repeats itself by its periods: the distance is that of the nearest repetition. `select_components`
+/// makes its contour. The contour may be any; `extract_component` (tegl/pick.hpp) reads only a part of an image.
+/// Errors: InvalidArgument (labels that do not fit, a point that is not finite, steps that are not positive);
+/// Cancelled. O(#S + #V) time. Thread-safe.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] NearestComponent nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                                 const std::type_identity_t<std::array<double, N>>& point,
+                                                 const std::type_identity_t<std::array<double, N>>& steps,
+                                                 const WorkOptions& work = {});
+/// The same with steps of 1.
+template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] NearestComponent nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                                                 const std::type_identity_t<std::array<double, N>>& point) {
+  std::array<double, N> ones;
+  ones.fill(1.0);
+  return nearest_component(contour, labels, point, ones);
+}
 
 /// Returns the contour with the labels as attribute "component" of the vertices and of the simplices; attributes of
 /// this name are replaced. Vertices without simplices get -1. Move the contour in to avoid a copy. Errors: those of

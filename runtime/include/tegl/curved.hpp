@@ -25,14 +25,23 @@ namespace tegl {
 /// Stores coordinates sample by sample (CurvedPoints): those that differ along the same axes together. Contours on the
 /// grid are the same, and take less time: with three coordinates in 3D arrays, up to 1.3 times the time of the plain
 /// contour in place of 1.7 times (docs/cost.md). One contour gains less time than this takes, so it is for several
-/// contours on a grid, or to save memory: 16 bytes per sample for three coordinates that float represents. The `values`
-/// of the results are empty; until this returns, the coordinates are twice in memory. `threads`: 0 for all of the
-/// machine. O(coordinates) time.
+/// contours on a grid, or to save memory: 16 bytes per sample for three coordinates that float represents. Coordinates
+/// that are side by side already need no copy: CurvedPoints::in_place. The `values` of the results are empty; until
+/// this returns, the coordinates are twice in memory. `threads`: 0 for all of the machine. O(coordinates) time.
 [[nodiscard]] std::vector<CurvedAxis> by_points(std::vector<CurvedAxis> curved, unsigned threads = 0);
 /// As above, for coordinates in memory of the caller: arrays[k] has those of curved[k], sizes[k] many. The `values` of
 /// `curved` are not used. Errors: InvalidArgument for other numbers of arrays or sizes.
 [[nodiscard]] std::vector<CurvedAxis> by_points(std::vector<CurvedAxis> curved, std::span<const CoordinateArray> arrays,
                                                 std::span<const std::size_t> sizes, unsigned threads = 0);
+
+/// Continues longitudes in degrees across 180, in place: each differs from a known neighbour by 180 at most, by
+/// multiples of 360. `sizes`: of the grid, fastest axis first. NaN and numbers beyond -720 to 720 are unknown, and
+/// remain. The first known one remains, too. The longitude of a row's sample follows that of its predecessor; the first
+/// sample of a row, or the first behind unknown ones, follows its neighbour in another row. Parts of the grid without
+/// neighbours in common follow the nearest sample of another part, by steps on the grid. For CurvedAxis::values, as
+/// files are read. Errors: InvalidArgument for another number of longitudes than the sizes'. O(longitudes) time; if
+/// there are such parts, more time and 30 bytes per longitude.
+void continue_longitudes(std::span<double> longitudes, std::span<const std::size_t> sizes);
 
 /// A periodic axis of a curved grid: cells across the seam connect the last samples along it to the first ones.
 template <int N>
@@ -45,12 +54,20 @@ struct CurvedSeam {
 template <int N>
 using CurvedSeams = std::type_identity_t<std::span<const CurvedSeam<N>>>;
 
+/// The periods of `axes` that are given without a number: 360 for those with a unit of longitudes, whether even or not,
+/// and those of `sample_periods` for others. Errors: as `sample_periods`; InvalidArgument for longitudes that span 360
+/// degrees or more, as if the first sample is repeated at the end, and for longitudes with a gap of 180 degrees or more
+/// between the last sample and the first one.
+template <int N>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] AxisPeriods<N> default_periods(const Grid<N>& grid, std::span<const int> axes);
+
 /// The seams of these axes. Vectors are 360 for coordinates with a unit of degrees_east (or another as in
-/// `longitude_periods`) that the seam continues, and the periods of `longitude_periods` or `sample_periods` for axes
-/// that are not curved; otherwise 0. `periods`, if any, has a number for each of the axes: the length of the seam along
-/// the axis's own coordinate, in the direction in which that grows, or NaN for the vector above. Errors: InvalidGrid
-/// (as `extract_curved`, and an axis that the grid does not have); InvalidArgument (another number of periods, or one
-/// that is not positive and finite).
+/// `longitude_periods`) that the seam continues, and the periods of `default_periods` for axes that are not curved;
+/// otherwise 0. `periods`, if any, has a number for each of the axes: the length of the seam along the axis's own
+/// coordinate, in the direction in which that grows, or NaN for the vector above. Errors: InvalidGrid (as
+/// `extract_curved`, and an axis that the grid does not have); InvalidArgument (as `default_periods`; another number of
+/// periods, or one that is not positive and finite).
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,
@@ -58,10 +75,10 @@ requires DimensionBetween<N, 2, 4>
 
 /// The axes that run once around the globe: longitudes of `longitude_periods`, and axes along which curved longitudes
 /// (the same units) grow by 360 degrees from the first sample to one step behind the last one, in each row to half a
-/// step. `find_seams` makes their seams. Errors: InvalidGrid (as `extract_curved`). O(samples / samples along the axis)
-/// time.
+/// step. `find_seams` makes their seams. Errors: InvalidGrid (as `extract_curved`; in 5D any curved axis). O(samples /
+/// samples along the axis) time.
 template <int N>
-requires DimensionBetween<N, 2, 4>
+requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::vector<int> longitude_axes(const Grid<N>& grid, std::span<const CurvedAxis> curved = {});
 
 /// The periods on index_grid(grid, curved) of the seams: for `extract_periodic` there. Errors: InvalidGrid (as

@@ -8,12 +8,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "tegl/complex.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/division.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/image.hpp"
 #include "tegl/lattice.hpp"
@@ -207,6 +210,36 @@ requires DimensionBetween<N, 2, 4>
 [[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, Lattice lattice, double isovalue,
                                                      const ExtractOptions& options = {},
                                                      const AxisPeriods<N>& periods = {});
+
+/// Extracts the contour {value = isovalue} of an image whose cells are divided into simplices as facets: those of
+/// divided_complex(image, division, isovalue) by `extract_facets` of a complex. So each simplex that the contour passes
+/// has one facet: in 3D a triangle or a quadrilateral; cells that `hybrid` does not divide have those of images.
+/// `options` and `periods` as for `extract_divided`, except that `triangulation` is ignored: points and normals are
+/// those of its compact contour, with the names and units of the image's axes. FacetHierarchy::cells is the number of
+/// simplices. Errors: those of `extract_divided` and of `extract_facets` of a complex. Time and memory: those of both.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] FacetHierarchy<N, Real> extract_facets(const Image<T, N>& image, Division division, double isovalue,
+                                                     const ExtractOptions& options = {},
+                                                     const AxisPeriods<N>& periods = {});
+
+/// Receives the facets of the i-th isovalue.
+template <int N, Coordinate Real>
+using FacetSink = std::function<void(std::size_t i, FacetHierarchy<N, Real> facets)>;
+
+/// As `extract_facets` for several isovalues, whose facets are passed to `use` one after the other. The cells of the
+/// lattice or division, which do not depend on the isovalue (except those of `hybrid`), are made once. Errors: as
+/// there, before any is passed for arguments; those of `use`.
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+void extract_facets_several(const Image<T, N>& image, Lattice lattice, std::span<const double> isovalues,
+                            const std::type_identity_t<FacetSink<N, Real>>& use, const ExtractOptions& options = {},
+                            const AxisPeriods<N>& periods = {});
+template <Coordinate Real = float, Value T, int N>
+requires DimensionBetween<N, 2, 4>
+void extract_facets_several(const Image<T, N>& image, Division division, std::span<const double> isovalues,
+                            const std::type_identity_t<FacetSink<N, Real>>& use, const ExtractOptions& options = {},
+                            const AxisPeriods<N>& periods = {});
 
 /// The Euler characteristic of facet f of dimension k with its boundary: 1, or 0 for a solid torus. For a polyhedron it
 /// is half the Euler characteristic of its boundary: each handle subtracts 1, each boundary component after the first

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <span>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -25,8 +26,11 @@ template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] AxisPeriods<N> sample_periods(const Grid<N>& grid, std::span<const int> axes);
 
-/// The periods of longitudes: 360 for each even axis with a unit of degrees_east (also degree_east, degree_E,
-/// degrees_E, degreeE, degreesE) whose samples span 360 degrees without repeating the first one; 0 for the others.
+/// Whether a unit is one of longitudes: degrees_east, degree_east, degree_E, degrees_E, degreeE or degreesE.
+[[nodiscard]] bool is_longitude_unit(std::string_view unit) noexcept;
+
+/// The periods of longitudes: 360 for each even axis with a unit of longitudes (`is_longitude_unit`) whose samples span
+/// 360 degrees without repeating the first one; 0 for the others.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] AxisPeriods<N> longitude_periods(const Grid<N>& grid);

@@ -160,7 +160,7 @@ struct TrackOptions {
 /// min_lifetime; a vertex number out of range), Cancelled. An empty contour gives an empty graph. Thread-safe. Cost:
 /// O(#V + #S), plus a search for each vertex above which a part may split: from all sides at once, until all
 /// sides except the largest are complete or found to be connected; plus the cuts at `times`. Memory (N = 4): 57 bytes
-/// per simplex, 4 more with `times`, and 54 per vertex, plus 1 per simplex and 8 per vertex for each thread.
+/// per simplex, 4 more with `times`, and 54 per vertex, plus 8 per vertex for each thread.
 ///
 /// Based on: G. Reeb, Sur les points singuliers d'une forme de Pfaff complètement intégrable, 1946; S. Parsa, A
 /// deterministic O(m log m) time algorithm for the Reeb graph, 2012 (a sweep that maintains the components of the cut);

@@ -22,6 +22,7 @@
 #include "images/nrrd.hpp"
 #include "images/vtk_image.hpp"
 #include "process/separate_reading.hpp"
+#include "tegl/curved.hpp"
 #include "vtk/pvd.hpp"
 
 namespace tegl {
@@ -238,6 +239,8 @@ ReadImageResult read_image(const fs::path& path, const ReadImageOptions& options
   };
   const bool separate = options.separate_process && needs_separate_process(path);
   RawImage image = (separate ? read_separately(path, options.work.progress, read) : read(options.work.progress)).image;
+  // Contours take less time, and coordinates that float represents less memory. Not in a child, which has one thread.
+  image.info.curved = by_points(std::move(image.info.curved), options.work.threads);
   ImageInfo info = image.info;  // errors about the axes name the format
   AnyImage result = to_any_image(std::move(image), path);
   tick(options.work.progress, 1.0, path);

@@ -24,6 +24,7 @@
 
 #include "base/common.hpp"
 #include "images/netcdf_packing.hpp"
+#include "tegl/curved.hpp"
 
 namespace tegl::io_detail {
 
@@ -224,6 +225,14 @@ void remark_on_unused(const CurvedVariables& variables, const TwoFree& two_free,
       fmt::join(names, ", ")));
 }
 
+/// The sizes of the axes that a coordinate differs along, fastest first.
+std::vector<std::size_t> sizes_along(const CurvedVariable& one, const std::vector<Axis>& axes) {
+  std::vector<std::size_t> sizes;
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    if ((one.along >> a & 1u) != 0) sizes.push_back(axes[a].size());
+  return sizes;
+}
+
 /// Makes coordinates missing that are too large to be places, and adds a remark on them.
 void hide_large(Coordinate meaning, const CurvedVariable& one, const std::vector<Axis>& axes,
                 std::vector<double>& values, std::vector<std::string>& remarks) {
@@ -233,30 +242,15 @@ void hide_large(Coordinate meaning, const CurvedVariable& one, const std::vector
   if (first == values.end()) return;
   std::vector<std::size_t> index;
   auto rest = static_cast<std::size_t>(first - values.begin());
-  for (std::size_t a = 0; a < axes.size(); ++a) {
-    if ((one.along >> a & 1u) == 0) continue;
-    index.push_back(rest % axes[a].size());
-    rest /= axes[a].size();
+  for (const std::size_t size : sizes_along(one, axes)) {
+    index.push_back(rest % size);
+    rest /= size;
   }
   const auto others = std::count_if(first + 1, values.end(), is_large);
   remarks.push_back(fmt::format("the coordinate '{}' is {} at ({}){}; expected {}: such places are unknown",
                                 one.variable.name, *first, fmt::join(index, ", "),
                                 others == 0 ? "" : fmt::format(", and too large at {} more", others), expected));
   std::ranges::replace_if(values, is_large, std::numeric_limits<double>::quiet_NaN());
-}
-
-/// Continues longitudes across 360 degrees, from each value to the next.
-void unwrap(std::vector<double>& longitudes, std::size_t row) {
-  double first = std::numeric_limits<double>::quiet_NaN();
-  double last = first;
-  for (std::size_t i = 0; i < longitudes.size(); ++i) {
-    const double& reference = i % row == 0 && !std::isnan(first) ? first : last;
-    double& value = longitudes[i];
-    if (std::isnan(value)) continue;
-    if (!std::isnan(reference)) value += 360.0 * std::round((reference - value) / 360.0);
-    if (i % row == 0) first = value;
-    last = value;
-  }
 }
 
 /// The values of a coordinate variable, in the order of the image's axes.
@@ -335,7 +329,7 @@ std::vector<CurvedAxis> find_curved(const NcFile& file, const NcVariable& variab
     axes[axis] = std::move(indices);
     std::vector<double> values = read_curved(file, variable, slab, one, axes);
     hide_large(meaning, one, axes, values, remarks);
-    if (meaning == Coordinate::longitude) unwrap(values, axes[axis].size());
+    if (meaning == Coordinate::longitude) continue_longitudes(values, sizes_along(one, axes));
     result.push_back({static_cast<int>(axis), one.along, std::move(values),
                       one.variable.name.substr(one.variable.name.rfind('/') + 1), file.text(one.variable, "units")});
     grid.directions[axis] = direction_of(file, one.variable);

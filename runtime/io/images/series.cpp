@@ -19,6 +19,7 @@
 #include "images/layers.hpp"
 #include "images/members.hpp"
 #include "process/separate_reading.hpp"
+#include "tegl/curved.hpp"
 
 namespace tegl {
 
@@ -132,8 +133,10 @@ ImageOfFiles read_raw(std::span<const fs::path> files, const SeriesOptions& opti
     own.work.progress = progress;
     return read_files(files, own);
   };
-  return is_read_separately(files, options) ? read_separately(files[0], options.work.progress, read)
-                                            : read(options.work.progress);
+  ImageOfFiles result = is_read_separately(files, options) ? read_separately(files[0], options.work.progress, read)
+                                                           : read(options.work.progress);
+  result.image.info.curved = by_points(std::move(result.image.info.curved), options.work.threads);  // as in read_image
+  return result;
 }
 
 ReadSeriesResult series_of(ImageOfFiles&& read, std::span<const fs::path> files, const SeriesOptions& options) {

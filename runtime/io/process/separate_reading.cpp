@@ -134,7 +134,8 @@ void put_info(Packer& packer, const ImageInfo& info) {
   put_list(packer, info.curved, [&](const CurvedAxis& curved) {
     packer.number(static_cast<std::uint64_t>(curved.axis));
     packer.number(static_cast<std::uint64_t>(curved.along));
-    put_list(packer, curved.values, [&](double value) { packer.number(value); });
+    packer.number(static_cast<std::uint64_t>(curved.size()));
+    for (std::size_t i = 0; i < curved.size(); ++i) packer.number(curved[i]);
     packer.text(curved.name);
     packer.text(curved.unit);
   });

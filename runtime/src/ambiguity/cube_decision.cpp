@@ -201,7 +201,9 @@ const FaceBlock<N>& RowFaces<N>::look_at(std::size_t word) noexcept {
   const std::size_t count = std::min(block_.kSamples, samples_ - base_[0]);
   block_.tiles = count - 1;
   estimator_.source().corner_rows(base_, count, block_.samples[0].data(), block_.kPitch);
-  for (auto& row : block_.samples) std::fill_n(row.data() + count, block_.kPitch - count, 0.0);
+  // the rest of the last register, of at most 16 lanes, and the sample after it
+  static_assert(FaceBlock<N>::kSamples + 15 <= FaceBlock<N>::kPitch);
+  for (auto& row : block_.samples) std::fill_n(row.data() + count, 15, 0.0);
   if (estimator_.is_by_means())
     decide_by_means(block_, estimator_.isovalue());
   else

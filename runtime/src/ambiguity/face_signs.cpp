@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
+#include <utility>
 
 #include "ambiguity/saddle.hpp"
 
@@ -177,38 +178,53 @@ HWY_INLINE auto error_of_means(const From& from, std::size_t at) {
   return hn::IfThenElse(in_range, hn::Mul(size, hn::Set(d, From::kUnitOfMeans)), infinite);
 }
 
-/// Decides the faces along two axes across the row, and those that these span with the row.
+/// Calls visit(number) for the numbers below Count, as constants.
+template <unsigned Count, class Visit>
+HWY_INLINE void unrolled(const Visit& visit) {
+  [&]<unsigned... I>(std::integer_sequence<unsigned, I...>) HWY_ATTR {
+    (visit(std::integral_constant<unsigned, I>{}), ...);
+  }
+  (std::make_integer_sequence<unsigned, Count>());
+}
+
+/// Decides the faces along two axes across the row, and those that these span with the row. Unrolled, so that the
+/// faces' numbers are constants.
 template <int N, class From, class D>
 HWY_INLINE void take_means_across(const From& from, std::size_t at, Means<D>& means) {
-  static constexpr FaceNumbers<N> kNumbers;
-  for (unsigned a = 1; a < N; ++a)
-    for (unsigned b = a + 1; b < N; ++b)
-      for (unsigned row = 0; row < From::kRows; ++row) {
-        const unsigned up_a = 1u << (a - 1), up_b = 1u << (b - 1), axes = 1u << a | 1u << b;
-        if ((row & (up_a | up_b)) != 0) continue;
+  constexpr FaceNumbers<N> kNumbers;
+  unrolled<N * N * From::kRows>([&](auto number) HWY_ATTR {
+    constexpr unsigned kA = number / From::kRows / N, kB = number / From::kRows % N, kRow = number % From::kRows;
+    if constexpr (kA >= 1 && kB > kA) {
+      constexpr unsigned kUpA = 1u << (kA - 1), kUpB = 1u << (kB - 1), kAxes = 1u << kA | 1u << kB;
+      if constexpr ((kRow & (kUpA | kUpB)) == 0) {
         const auto sum = [&](std::size_t to) HWY_ATTR {
-          return hn::Add(hn::Add(from.at(row, to), from.at(row | up_a, to)),
-                         hn::Add(from.at(row | up_b, to), from.at(row | up_a | up_b, to)));
+          return hn::Add(hn::Add(from.at(kRow, to), from.at(kRow | kUpA, to)),
+                         hn::Add(from.at(kRow | kUpB, to), from.at(kRow | kUpA | kUpB, to)));
         };
         const auto here = sum(at), next = sum(at + 1);
-        means.take(kNumbers.of[axes][row << 1], 4, here);
-        means.take(kNumbers.of[axes][row << 1 | 1], 4, next);
-        means.take(kNumbers.of[axes | 1][row << 1], 8, hn::Add(here, next));
+        means.take(kNumbers.of[kAxes][kRow << 1], 4, here);
+        means.take(kNumbers.of[kAxes][kRow << 1 | 1], 4, next);
+        means.take(kNumbers.of[kAxes | 1][kRow << 1], 8, hn::Add(here, next));
       }
+    }
+  });
 }
 
 /// Decides the squares along the row.
 template <int N, class From, class D>
 HWY_INLINE void take_means_along(const From& from, std::size_t at, Means<D>& means) {
-  static constexpr FaceNumbers<N> kNumbers;
-  for (unsigned a = 1; a < N; ++a)
-    for (unsigned row = 0; row < From::kRows; ++row) {
-      const unsigned up = 1u << (a - 1);
-      if ((row & up) != 0) continue;
-      const auto here = hn::Add(from.at(row, at), from.at(row | up, at));
-      const auto next = hn::Add(from.at(row, at + 1), from.at(row | up, at + 1));
-      means.take(kNumbers.of[1u << a | 1u][row << 1], 4, hn::Add(here, next));
+  constexpr FaceNumbers<N> kNumbers;
+  unrolled<N * From::kRows>([&](auto number) HWY_ATTR {
+    constexpr unsigned kA = number / From::kRows, kRow = number % From::kRows;
+    if constexpr (kA >= 1) {
+      constexpr unsigned kUp = 1u << (kA - 1);
+      if constexpr ((kRow & kUp) == 0) {
+        const auto here = hn::Add(from.at(kRow, at), from.at(kRow | kUp, at));
+        const auto next = hn::Add(from.at(kRow, at + 1), from.at(kRow | kUp, at + 1));
+        means.take(kNumbers.of[1u << kA | 1u][kRow << 1], 4, hn::Add(here, next));
+      }
     }
+  });
 }
 
 /// Decides the tesseract and its cubes across the row.
@@ -333,7 +349,7 @@ struct Saddles {
 /// Returns the greatest absolute value of the corners minus the isovalue.
 template <int N, class From, class D>
 HWY_INLINE auto take_saddles(const From& from, std::size_t at, Saddles<D>& saddles) {
-  static constexpr FaceNumbers<N> kNumbers;
+  constexpr FaceNumbers<N> kNumbers;
   using T = hn::TFromD<D>;
   // Adding 0 and not subtracting it makes 0 of -0.
   [[maybe_unused]] const auto minus = hn::Set(D(), from.isovalue == T{0} ? T{0} : -from.isovalue);
@@ -346,21 +362,26 @@ HWY_INLINE auto take_saddles(const From& from, std::size_t at, Saddles<D>& saddl
   auto largest = hn::Zero(D());
   for (unsigned row = 0; row < From::kRows; ++row)
     for (unsigned side = 0; side < 2; ++side) largest = hn::Max(largest, hn::Abs(difference(row, at + side)));
-  for (unsigned a = 1; a < N; ++a)
-    for (unsigned row = 0; row < From::kRows; ++row) {
-      const unsigned up_a = 1u << (a - 1);
-      if ((row & up_a) != 0) continue;
-      saddles.take(kNumbers.of[1u << a | 1u][row << 1], difference(row, at), difference(row, at + 1),
-                   difference(row | up_a, at), difference(row | up_a, at + 1));
-      for (unsigned b = a + 1; b < N; ++b) {
-        const unsigned up_b = 1u << (b - 1);
-        if ((row & up_b) != 0) continue;
-        for (unsigned side = 0; side < 2; ++side)
-          saddles.take(kNumbers.of[1u << a | 1u << b][row << 1 | side], difference(row, at + side),
-                       difference(row | up_a, at + side), difference(row | up_b, at + side),
-                       difference(row | up_a | up_b, at + side));
+  unrolled<N * From::kRows>([&](auto number) HWY_ATTR {
+    constexpr unsigned kA = number / From::kRows, kRow = number % From::kRows;
+    if constexpr (kA >= 1) {
+      constexpr unsigned kUpA = 1u << (kA - 1);
+      if constexpr ((kRow & kUpA) == 0) {
+        saddles.take(kNumbers.of[1u << kA | 1u][kRow << 1], difference(kRow, at), difference(kRow, at + 1),
+                     difference(kRow | kUpA, at), difference(kRow | kUpA, at + 1));
+        unrolled<2 * N>([&](auto other) HWY_ATTR {
+          constexpr unsigned kB = other / 2, kSide = other % 2;
+          if constexpr (kB > kA) {
+            constexpr unsigned kUpB = 1u << (kB - 1);
+            if constexpr ((kRow & kUpB) == 0)
+              saddles.take(kNumbers.of[1u << kA | 1u << kB][kRow << 1 | kSide], difference(kRow, at + kSide),
+                           difference(kRow | kUpA, at + kSide), difference(kRow | kUpB, at + kSide),
+                           difference(kRow | kUpA | kUpB, at + kSide));
+          }
+        });
       }
     }
+  });
   return largest;
 }
 

@@ -145,64 +145,85 @@ class WordResolver {
       : estimator_(estimator), block_(block), of_(of), cubes_(ResolvedCubes::instance(estimator.triangulation())) {}
 
   void resolve() noexcept {
-    take_faces();
     if (estimator_.separates())
       take_separate();
     else if (estimator_.is_by_means())
       take_means();
     else
       take_joins();
-    find_vertices();
     find_apart();
   }
 
  private:
-  /// Squares, tiles, and the cubes' entries of the table of resolved cubes.
-  void take_faces() noexcept {
+  /// Squares and tiles; calls take(tile, entry), where entry(cube) numbers the cube's entry in the table of resolved
+  /// cubes.
+  template <class Take>
+  void take_faces(const Take& take) noexcept {
     const bool separates = estimator_.separates();
     of_.unsure = 0;
     for (std::size_t j = 0; j < of_.count; ++j) {
       const unsigned bit = of_.bits[j], signature = of_.signatures[j];
       const std::uint64_t high = block_.high[bit];
       of_.unsure |= (block_.unsure >> bit & 1u) << j;
-      ResolvedKey& key = of_.tiles[j].key;
+      ResolvedTile& tile = of_.tiles[j];
+      ResolvedKey& key = tile.key;
       key.signature = static_cast<std::uint16_t>(signature);
       key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
       key.low_cubes = key.high_cubes = 0;
       const auto choice = (high >> kTesseractFace & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
       key.tile = separates ? tile::Choice::separate : choice;
       const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
-      for (unsigned f = 0; f < 8; ++f)
-        entries_[j][f] = static_cast<std::uint16_t>(cubes_.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
-                                                                 static_cast<unsigned>(squares >> (8 * f) & 63)));
+      take(j, [&](unsigned f) {
+        return cubes_.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
+                            static_cast<unsigned>(squares >> (8 * f) & 63));
+      });
     }
+  }
+
+  /// Whether a list has vertices, as bit `cube`. Without a branch: few have, which is hard to predict.
+  [[nodiscard]] unsigned with_vertices(unsigned list, unsigned cube) const noexcept {
+    return (cubes_.own_vertices(list) != 0 ? 1u : 0u) << cube;
   }
 
   void take_separate() noexcept {
-    for (std::size_t j = 0; j < of_.count; ++j)
-      for (unsigned f = 0; f < 8; ++f)
-        of_.tiles[j].lists[f] = cubes_.list_of_entry(entries_[j][f], tile::Choice::separate);
+    take_faces([&](std::size_t j, const auto& entry) {
+      ResolvedTile& tile = of_.tiles[j];
+      unsigned with = 0;
+      for (unsigned f = 0; f < 8; ++f) {
+        const unsigned list = tile.lists[f] = cubes_.list_of_entry(entry(f), tile::Choice::separate);
+        with |= with_vertices(list, f);
+      }
+      tile.with_vertices = static_cast<std::uint8_t>(with);
+    });
   }
 
   void take_means() noexcept {
-    for (std::size_t j = 0; j < of_.count; ++j) {
+    take_faces([&](std::size_t j, const auto& entry) {
       ResolvedTile& tile = of_.tiles[j];
       const auto high_cubes = static_cast<unsigned>(block_.high[of_.bits[j]] >> kFirstCube<4>);
-      unsigned with_choice = 0;
+      unsigned with = 0, with_choice = 0;
       for (unsigned f = 0; f < 8; ++f) {
-        const ResolvedCubes::Entry& entry = cubes_.at_entry(entries_[j][f]);  // a copy would be stored and loaded again
-        tile.lists[f] = entry.lists[entry.has_choice * (1 + (high_cubes >> f & 1u))];
-        with_choice |= unsigned{entry.has_choice} << f;
+        const ResolvedCubes::Entry& of_cube = cubes_.at_entry(entry(f));  // a copy would be stored and loaded again
+        const unsigned list = tile.lists[f] = of_cube.lists[1 + (high_cubes >> f & 1u)];  // equal without a choice
+        with |= with_vertices(list, f);
+        with_choice |= unsigned{of_cube.has_choice} << f;
       }
+      tile.with_vertices = static_cast<std::uint8_t>(with);
       tile.key.high_cubes = static_cast<std::uint8_t>(with_choice & high_cubes);
       tile.key.low_cubes = static_cast<std::uint8_t>(with_choice & ~high_cubes);
-    }
+    });
   }
 
   /// Decides the centres of cubes by the trilinear interpolant. Those with one pair of edges are listed without
   /// branches and asked about together.
   void take_joins() noexcept {
-    take_separate();
+    take_faces([&](std::size_t j, const auto& entry) {
+      for (unsigned f = 0; f < 8; ++f) {
+        const unsigned number = entry(f);
+        entries_[j][f] = static_cast<std::uint16_t>(number);
+        of_.tiles[j].lists[f] = cubes_.list_of_entry(number, tile::Choice::separate);
+      }
+    });
     const auto& joins = cube_joins();
     std::array<std::uint16_t, 8 * kWordBits> asked;  // 8 * tile + cube
     std::size_t count = 0;
@@ -223,6 +244,7 @@ class WordResolver {
     }
     for (std::size_t first = 0; first < count; first += JoinQuestions::kMost)
       ask_about({asked.data() + first, std::min(JoinQuestions::kMost, count - first)});
+    find_vertices();
   }
   void ask_about(std::span<const std::uint16_t> asked) noexcept {
     JoinQuestions questions;
@@ -261,9 +283,9 @@ class WordResolver {
   void find_vertices() noexcept {
     for (std::size_t j = 0; j < of_.count; ++j) {
       ResolvedTile& tile = of_.tiles[j];
-      unsigned with_vertices = 0;  // without branches: few cubes have vertices, which is hard to predict
-      for (unsigned f = 0; f < 8; ++f) with_vertices |= (cubes_.own_vertices(tile.lists[f]) != 0 ? 1u : 0u) << f;
-      tile.with_vertices = static_cast<std::uint8_t>(with_vertices);
+      unsigned with = 0;
+      for (unsigned f = 0; f < 8; ++f) with |= with_vertices(tile.lists[f], f);
+      tile.with_vertices = static_cast<std::uint8_t>(with);
     }
   }
 

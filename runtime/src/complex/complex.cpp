@@ -207,7 +207,7 @@ requires DimensionBetween<N, 2, 4> ContourSize count(const Complex<N>& complex, 
   const detail::ContourNumbers numbers(cells, detail::ComplexAccess::edges(complex), complex.values(), isovalue,
                                        options, detail::part_of(counting, 0.0, options.close ? 0.5 : 1.0), stats);
   // vertices where the contour touches itself at missing values are doubled
-  if (!numbers.vertices_at_missing(cells).empty()) {
+  if ((options.close && numbers.any_missing()) || !numbers.vertices_at_missing(cells).empty()) {
     ExtractOptions second_half = options;
     second_half.work.progress = detail::part_of(progress, 0.5, 1.0);
     const auto contour = extract<double>(complex, isovalue, second_half);

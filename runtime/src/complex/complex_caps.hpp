@@ -177,6 +177,15 @@ class NumberedContour {
     if (caps_) size.vertices += caps_->vertex_count(), size.simplices += caps_->simplices().size();
     return size;
   }
+  /// The vertices at which the contour may touch itself beside missing values: those on edges of cells with missing
+  /// corners, and all of caps. Caps may touch where no edge is crossed, if all corners are high.
+  [[nodiscard]] std::vector<Index> touching(const CellGroups& cells) const {
+    std::vector<Index> vertices = numbers_.vertices_at_missing(cells);
+    if (caps_ && numbers_.any_missing())
+      for (std::uint64_t v = numbers_.size().vertices; v < size().vertices; ++v)
+        vertices.push_back(static_cast<Index>(v));
+    return vertices;
+  }
 
  private:
   std::optional<ComplexCaps<N>> caps_of(const Complex<N>& complex, const BorderFacets* border, double isovalue,

@@ -85,6 +85,8 @@ class ContourNumbers {
 
   /// The numbers of vertices on edges of cells with missing corners, ascending: the contour may touch itself there.
   [[nodiscard]] std::vector<Index> vertices_at_missing(const CellGroups& cells) const;
+  /// Whether a value is missing.
+  [[nodiscard]] bool any_missing() const noexcept { return !bits_.missing.empty(); }
 
  private:
   CellTables tables_;

@@ -536,9 +536,9 @@ void write_contour(const Complex<N>& complex, const NumberedContour<N>& numbered
 
 /// Writes a numbered contour. `touching`: vertices at which it may touch itself beside missing values.
 template <class Real, int N>
-Contour<N, Real> contour_of(const Complex<N>& complex, const NumberedContour<N>& numbered, std::vector<Index> touching,
-                            double isovalue, const ExtractOptions& options, const Surroundings<N>& around,
-                            const Progress& progress) {
+Contour<N, Real> contour_of(const Complex<N>& complex, const NumberedContour<N>& numbered,
+                            const std::vector<Index>& touching, double isovalue, const ExtractOptions& options,
+                            const Surroundings<N>& around, const Progress& progress) {
   Contour<N, Real> contour;
   const ContourSize size = numbered.size();
   contour.direction = options.direction;
@@ -548,11 +548,7 @@ Contour<N, Real> contour_of(const Complex<N>& complex, const NumberedContour<N>&
   write_contour<Real, Index, N>(complex, numbered, isovalue, options, around, progress,
                                 {contour.vertices, contour.simplices, contour.normals});
   contour.periods = around.periods;
-  if (!touching.empty()) {
-    for (std::size_t v = numbered.numbers().size().vertices; v < size.vertices; ++v)
-      touching.push_back(static_cast<Index>(v));
-    split_nonmanifold<N, Real>(contour, touching, std::numeric_limits<Index>::max());
-  }
+  if (!touching.empty()) split_nonmanifold<N, Real>(contour, touching, std::numeric_limits<Index>::max());
   return contour;
 }
 
@@ -569,7 +565,7 @@ Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const
                                     part_of(progress, 0.0, 0.6), result.stats);
   std::vector<Index> touching;
   if (around.keys == nullptr) {
-    touching = numbered.numbers().vertices_at_missing(ComplexAccess::cells(complex));
+    touching = numbered.touching(ComplexAccess::cells(complex));
   } else {
     *around.keys = {numbered.numbers().edge_ends(), numbered.numbers().polygons(),
                     static_cast<std::size_t>(numbered.numbers().size().vertices)};
@@ -580,7 +576,7 @@ Extraction<N, Real> extract_in(const Complex<N>& complex, double isovalue, const
   if (around.caps != nullptr && numbered.caps() != nullptr) *around.caps = numbered.caps()->by_facet();
   Stopwatch watch;
   result.contour =
-      contour_of<Real>(complex, numbered, std::move(touching), isovalue, options, around, part_of(progress, 0.6, 1.0));
+      contour_of<Real>(complex, numbered, touching, isovalue, options, around, part_of(progress, 0.6, 1.0));
   watch.add_to(result.stats.generate_seconds);
   return result;
 }
@@ -606,7 +602,7 @@ requires DimensionBetween<N, 2, 4> ExtractedSize extract_into(const Complex<N>& 
   detail::check_room(room, result.size = numbered.size(), with_normals);
   detail::Stopwatch watch;
   const Progress writing = detail::part_of(options.work.progress, 0.6, 1.0);
-  if (auto touching = numbered.numbers().vertices_at_missing(detail::ComplexAccess::cells(complex)); touching.empty()) {
+  if (const auto touching = numbered.touching(detail::ComplexAccess::cells(complex)); touching.empty()) {
     detail::write_contour<Real, I, N>(complex, numbered, isovalue, options, {}, writing, room);
   } else {
     const auto contour = detail::contour_of<Real, N>(complex, numbered, touching, isovalue, options, {}, writing);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Folds of curved grids, and contours on them; see tegl/curved.hpp.
+// Contours on curved grids; see tegl/curved.hpp.
 #include "tegl/curved.hpp"
 
 #include <algorithm>
@@ -191,60 +191,6 @@ void move_contour(const Mover<N>& mover, std::span<const CurvedAxis> curved, con
   }
 }
 
-}  // namespace
-
-template <int N>
-requires DimensionBetween<N, 2, 4> GridFolds<N> find_folds(const Grid<N>& grid, std::span<const CurvedAxis> curved,
-                                                           const WorkOptions& work, const CurvedSeams<N>& seams) {
-  detail::require_curved<N>(grid, curved);
-  if (!seams.empty()) {
-    const detail::LongerCurved<N> longer = detail::longer_curved<N>(grid, curved, seams);
-    return find_folds<N>(longer.grid, longer.curved, work);
-  }
-  const detail::CurvedMap<N> map(grid, curved);
-  GridFolds<N> folds;
-  if (curved.empty()) return folds;
-  // Cells that differ only along other axes are alike.
-  std::array<std::size_t, N> cells;
-  std::size_t count = 1, alike = 1;
-  for (int a = 0; a < N; ++a) {
-    const bool differs = (map.along() >> a & 1u) != 0;
-    const std::size_t size = grid.axes[a].size() - 1;
-    cells[a] = differs ? size : 1;
-    count *= cells[a];
-    alike *= differs ? 1 : size;
-  }
-  const double expected = map.main_orientation();
-  const auto cell_of = [&](std::size_t number) {
-    std::array<std::size_t, N> cell{};
-    for (int a = 0; a < N; ++a) {
-      cell[a] = number % cells[a];
-      number /= cells[a];
-    }
-    return cell;
-  };
-  std::atomic<std::uint64_t> found{0};
-  std::atomic<std::size_t> first{std::numeric_limits<std::size_t>::max()};
-  detail::for_each_item(count, work.threads, work.progress, [&](std::size_t number) {
-    const std::array<std::size_t, N> cell = cell_of(number);
-    bool is_folded = false;
-    for (unsigned corner = 0; corner < 1u << N; ++corner) {
-      if ((corner & ~map.along()) != 0) continue;
-      const double orientation = map.orientation(cell, corner);
-      if (std::isnan(orientation)) return;
-      is_folded = is_folded || orientation != expected;
-    }
-    if (!is_folded) return;
-    found.fetch_add(1, std::memory_order_relaxed);
-    detail::lower_to(first, number);
-  });
-  folds.cells = found * alike;
-  if (folds.cells > 0) folds.first = cell_of(first);
-  return folds;
-}
-
-namespace {
-
 /// As index_grid; `step`: of the first curved axis.
 template <int N>
 Grid<N> with_indices(const Grid<N>& grid, std::span<const CurvedAxis> curved, double step) {
@@ -316,8 +262,6 @@ requires DimensionBetween<N, 2, 4> Contour<N, Real> on_curved_grid(Contour<N, Re
 }
 
 #define TEGL_INSTANTIATE_CURVED(N)                                                                                    \
-  template GridFolds<N> find_folds<N>(const Grid<N>&, std::span<const CurvedAxis>, const WorkOptions&,                \
-                                      const CurvedSeams<N>&);                                                         \
   template Grid<N> index_grid<N>(const Grid<N>&, std::span<const CurvedAxis>);                                        \
   template Contour<N, float> on_curved_grid<float, N>(Contour<N, float>, const Grid<N>&, std::span<const CurvedAxis>, \
                                                       const WorkOptions&, const CurvedSeams<N>&);                     \

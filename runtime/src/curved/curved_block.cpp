@@ -5,6 +5,8 @@
 #include "curved/curved_block.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <numeric>
 #include <type_traits>
 
@@ -177,27 +179,76 @@ void ends_of_doubles(const double* points, std::size_t dim, const IndexSteps& st
              : all_ends<4>(points, steps, arrays, block);
 }
 
-/// Sets all coordinates of points whose columns are consecutive axes, from `out` on. The same arithmetic as
-/// set_between. A sample's numbers never are in two cache lines.
-template <std::size_t Columns, class T, class Real>
+/// Reads the coordinates of samples, side by side, in the order of their axes. Reads no other numbers, as the memory
+/// may end behind them, except for three that are `Aligned` as four, in the same cache line.
+template <std::size_t Columns, bool Descends, bool Aligned, class T>
+struct ColumnReader {
+  static constexpr std::size_t kWidth = Columns == 2 ? 2 : 4;
+  using Tag = hn::CappedTag<double, kWidth>;
+  using StoredTag = hn::Rebind<T, Tag>;
+  static constexpr bool kIsOneVector = hn::MaxLanes(Tag()) == kWidth;
+
+  /// Coordinates `c` and following of the sample at `from`.
+  HWY_INLINE hn::Vec<Tag> operator()(const T* from, std::size_t c) const {
+    const StoredTag stored;
+    if constexpr (Columns == 3 && kIsOneVector) {
+      if constexpr (Aligned && !Descends) return longer(hn::LoadU(stored, from));
+      constexpr LaneIndex kLast = Aligned ? 2 : 3;
+      alignas(32) constexpr std::array<LaneIndex, kWidth> kOrder = {Descends ? kLast : 0, 1, Descends ? 0 : kLast, 1};
+      return longer(hn::TableLookupLanes(all(from), hn::SetTableIndices(stored, kOrder.data())));
+    } else if constexpr (Descends && kIsOneVector) {
+      return longer(hn::Reverse(stored, hn::LoadU(stored, from)));
+    } else if constexpr (Descends) {
+      std::array<T, kWidth> turned{};
+      for (std::size_t i = c; i < std::min(c + hn::Lanes(stored), Columns); ++i) turned[i - c] = from[Columns - 1 - i];
+      return longer(hn::LoadU(stored, turned.data()));
+    } else {
+      if (Columns == 3 && c == 2) return longer(hn::Set(stored, from[c]));
+      return longer(hn::LoadU(stored, from + c));
+    }
+  }
+
+ private:
+  /// As doubles.
+  static HWY_INLINE hn::Vec<Tag> longer(hn::Vec<StoredTag> v) {
+    if constexpr (std::is_same_v<T, double>)
+      return v;
+    else
+      return hn::PromoteTo(Tag(), v);
+  }
+  /// Three coordinates: the last one is the last lane, unless they are aligned.
+  static HWY_INLINE hn::Vec<StoredTag> all(const T* from) {
+#if HWY_TARGET != HWY_SCALAR
+    const hn::Half<StoredTag> half;
+    if constexpr (!Aligned) return hn::Combine(StoredTag(), hn::LoadU(half, from + 1), hn::LoadU(half, from));
+#endif
+    return hn::LoadU(StoredTag(), from);
+  }
+  using LaneIndex = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+};
+
+/// Starts to load a sample. Always inlined: GCC removes calls of functions that do nothing else.
+template <std::size_t Columns, bool Aligned, class T>
+HWY_INLINE void request_sample(const T* first) {
+  hwy::Prefetch(first);
+  if constexpr (!Aligned) hwy::Prefetch(first + Columns - 1);
+}
+
+/// Sets all coordinates of points whose columns are side by side, of consecutive axes, from `out` on. The same
+/// arithmetic as set_between.
+template <std::size_t Columns, bool Descends, bool Aligned, class T, class Real>
 HWY_INLINE bool columns_between(const T* numbers, const CurvedBlock::Ends& ends, std::size_t count,
                                 const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* out) {
-  constexpr std::size_t kPitch = Columns == 2 ? 2 : 4;
-  const hn::CappedTag<double, kPitch> d;
-  const hn::Rebind<T, decltype(d)> stored;
+  using Reader = ColumnReader<Columns, Descends, Aligned, T>;
+  constexpr Reader kRead;
+  const typename Reader::Tag d;
   const hn::Rebind<Real, decltype(d)> real;
-  const auto number = [&](const T* from) HWY_ATTR {
-    if constexpr (std::is_same_v<T, double>)
-      return hn::LoadU(d, from);
-    else
-      return hn::PromoteTo(d, hn::LoadU(stored, from));
-  };
   auto sum = hn::Zero(d);  // 0 times infinity or NaN is NaN
   const auto set = [&](std::size_t i, Real* to) HWY_ATTR {
     const T *const first = numbers + ends.first[i], *const second = numbers + ends.second[i];
     const auto share = hn::Set(d, ends.weight[i]), rest = hn::Sub(hn::Set(d, 1.0), share);
-    for (std::size_t c = 0; c < kPitch; c += hn::Lanes(d)) {
-      const auto point = hn::Add(hn::Mul(rest, number(first + c)), hn::Mul(share, number(second + c)));
+    for (std::size_t c = 0; c < Columns; c += hn::Lanes(d)) {
+      const auto point = hn::Add(hn::Mul(rest, kRead(first, c)), hn::Mul(share, kRead(second, c)));
       sum = hn::MulAdd(hn::Zero(d), point, sum);
       if constexpr (std::is_same_v<Real, double>)
         hn::StoreU(point, real, to + c);
@@ -209,32 +260,36 @@ HWY_INLINE bool columns_between(const T* numbers, const CurvedBlock::Ends& ends,
   // Three columns are stored as four: this changes the next point, which is set afterwards, except for the last one.
   std::size_t i = 0;
   for (const std::size_t end = std::min(count - 1, requested); i < end; ++i) {
-    hwy::Prefetch(numbers + next.first[i]);
-    hwy::Prefetch(numbers + next.second[i]);
+    request_sample<Columns, Aligned>(numbers + next.first[i]);
+    request_sample<Columns, Aligned>(numbers + next.second[i]);
     set(i, out + dim * i);
   }
   for (; i < count - 1; ++i) set(i, out + dim * i);
-  Real last[kPitch];
+  Real last[Reader::kWidth];
   set(i, last);
   std::copy_n(last, Columns, out + dim * i);
   for (; i < requested; ++i) {
-    hwy::Prefetch(numbers + next.first[i]);
-    hwy::Prefetch(numbers + next.second[i]);
+    request_sample<Columns, Aligned>(numbers + next.first[i]);
+    request_sample<Columns, Aligned>(numbers + next.second[i]);
   }
   return hn::AllTrue(d, hn::Eq(sum, sum));
 }
 
-template <class T, class Real>
+template <bool Descends, bool Aligned, class T, class Real>
 bool points_between(const T* numbers, std::size_t columns, const CurvedBlock::Ends& ends, std::size_t count,
                     const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* out) {
-  return columns == 2   ? columns_between<2>(numbers, ends, count, next, requested, dim, out)
-         : columns == 3 ? columns_between<3>(numbers, ends, count, next, requested, dim, out)
-                        : columns_between<4>(numbers, ends, count, next, requested, dim, out);
+  return columns == 2   ? columns_between<2, Descends, Aligned>(numbers, ends, count, next, requested, dim, out)
+         : columns == 3 ? columns_between<3, Descends, Aligned>(numbers, ends, count, next, requested, dim, out)
+                        : columns_between<4, Descends, Aligned>(numbers, ends, count, next, requested, dim, out);
 }
-#define TEGL_POINTS_BETWEEN(name, T, Real)                                                           \
-  bool name(const T* numbers, std::size_t columns, const CurvedBlock::Ends& ends, std::size_t count, \
-            const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* out) {      \
-    return points_between(numbers, columns, ends, count, next, requested, dim, out);                 \
+#define TEGL_POINTS_BETWEEN(name, T, Real)                                                                            \
+  bool name(const T* first, const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,             \
+            const CurvedBlock::Ends& next, std::size_t requested, std::size_t dim, Real* out) {                       \
+    const bool descends = arrays.columns == CurvedColumns::descending;                                                \
+    const auto& set = arrays.may_be_in_two_lines                                                                      \
+                          ? (descends ? points_between<true, false, T, Real> : points_between<false, false, T, Real>) \
+                          : (descends ? points_between<true, true, T, Real> : points_between<false, true, T, Real>);  \
+    return set(first, arrays.count, ends, count, next, requested, dim, out);                                          \
   }
 TEGL_POINTS_BETWEEN(floats_between_floats, float, float)
 TEGL_POINTS_BETWEEN(doubles_between_floats, float, double)
@@ -266,23 +321,62 @@ void find_ends(const double* points, std::size_t dim, const IndexSteps& steps, s
   HWY_DYNAMIC_DISPATCH(ends_of_doubles)(points, dim, steps, arrays, block);
 }
 
-void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept {
-  const auto fetch = [&](const auto* numbers) {
-    for (std::size_t i = 0; i < count; ++i) {
-      hwy::Prefetch(numbers + ends.first[i]);
-      hwy::Prefetch(numbers + ends.second[i]);
-    }
+void CurvedArrays::find_columns(std::size_t dim) noexcept {
+  columns = CurvedColumns::separate;
+  if (count < 2 || (count == 3 && dim != 3)) return;  // three columns are stored as four
+  const auto address = [&](std::size_t k) {
+    return are_floats ? reinterpret_cast<std::uintptr_t>(floats[k]) : reinterpret_cast<std::uintptr_t>(doubles[k]);
   };
+  const std::size_t bytes = are_floats ? sizeof(float) : sizeof(double);
+  const auto first = axis.begin(), end = first + static_cast<std::ptrdiff_t>(count);
+  const auto lowest = std::min_element(first, end), highest = std::max_element(first, end);
+  const auto is_first = [&](std::size_t k, const auto& distance) {
+    for (std::size_t other = 0; other < count; ++other)
+      if (address(other) != address(k) + bytes * distance(axis[other])) return false;
+    first_column = k;
+    return true;
+  };
+  if (is_first(static_cast<std::size_t>(lowest - first), [&](std::size_t a) { return a - *lowest; }))
+    columns = CurvedColumns::ascending;
+  else if (is_first(static_cast<std::size_t>(highest - first), [&](std::size_t a) { return *highest - a; }))
+    columns = CurvedColumns::descending;
+  // Axes between others are missing, or have another group's coordinates.
+  if (*highest - *lowest != count - 1) columns = CurvedColumns::separate;
+  lowest_axis = *lowest;
+  const std::size_t width = bytes * std::bit_ceil(count);  // at most half a line
+  may_be_in_two_lines = address(first_column) % width != 0 || bytes * pitch % width != 0;
+}
+
+/// Starts to load numbers at the ends of edges. Always inlined, as request_sample.
+template <class T>
+static HWY_INLINE void request_ends(const T* numbers, const CurvedBlock::Ends& ends, std::size_t count) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    hwy::Prefetch(numbers + ends.first[i]);
+    hwy::Prefetch(numbers + ends.second[i]);
+  }
+}
+
+template <class T>
+static HWY_INLINE void request_all(const CurvedArrays::Numbers<T>& numbers, const CurvedArrays& arrays,
+                                   const CurvedBlock::Ends& ends, std::size_t count) noexcept {
+  if (arrays.columns == CurvedColumns::separate) {
+    for (std::size_t k = 0; k < arrays.count; ++k) request_ends(numbers[k], ends, count);
+    return;
+  }
+  request_ends(numbers[arrays.first_column], ends, count);
+  if (arrays.may_be_in_two_lines) request_ends(numbers[arrays.first_column] + arrays.count - 1, ends, count);
+}
+
+void request(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count) noexcept {
   if (!arrays.is_large) return;
-  if (arrays.floats != nullptr) return fetch(arrays.floats);
-  if (arrays.doubles != nullptr) return fetch(arrays.doubles);
-  for (std::size_t k = 0; k < arrays.count; ++k) fetch(arrays.values[k]);
+  arrays.are_floats ? request_all(arrays.floats, arrays, ends, count)
+                    : request_all(arrays.doubles, arrays, ends, count);
 }
 
 /// Sets `Count` coordinates from numbers of their own or columns of points. Here, for the baseline: many processors
 /// load one by one faster than they gather, and results that go to memory once need no vectors.
 template <std::size_t Count, class T, class Real>
-static bool set_between(const CurvedArrays& arrays, const std::array<const T*, CurvedBlock::kMostAxes>& numbers,
+static bool set_between(const CurvedArrays& arrays, const CurvedArrays::Numbers<T>& numbers,
                         const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
                         std::size_t requested, std::size_t dim, Real* points) noexcept {
   std::array<const T*, Count> values;
@@ -315,7 +409,7 @@ static bool set_between(const CurvedArrays& arrays, const std::array<const T*, C
 }
 
 template <class T, class Real>
-static bool set_coordinates(const CurvedArrays& arrays, const std::array<const T*, CurvedBlock::kMostAxes>& numbers,
+static bool set_coordinates(const CurvedArrays& arrays, const CurvedArrays::Numbers<T>& numbers,
                             const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
                             std::size_t requested, std::size_t dim, Real* points) noexcept {
   constexpr std::array kSet = {&set_between<1, T, Real>, &set_between<2, T, Real>, &set_between<3, T, Real>,
@@ -323,26 +417,14 @@ static bool set_coordinates(const CurvedArrays& arrays, const std::array<const T
   return kSet[arrays.count - 1](arrays, numbers, ends, count, next, requested, dim, points);
 }
 
-/// Whether points_between sets the coordinates: all columns are needed, of consecutive axes, and the store of three
-/// columns as four overwrites no other coordinate of a point.
-static bool are_consecutive(const CurvedArrays& arrays, std::size_t dim) noexcept {
-  if (arrays.count < 2 || arrays.count != arrays.columns || (arrays.count == 3 && dim != 3)) return false;
-  for (std::size_t k = 0; k < arrays.count; ++k)
-    if (arrays.column[k] != arrays.axis[k] - arrays.axis[0] + arrays.column[0]) return false;
-  return true;
-}
-
 template <class Real, class T, class Vectors>
-static bool set_of_points(const T* numbers, const Vectors& by_vectors, const CurvedArrays& arrays,
-                          const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
-                          std::size_t requested, std::size_t dim, Real* points) noexcept {
-  if (are_consecutive(arrays, dim)) {
-    const std::size_t axis = arrays.axis[0] - arrays.column[0];
-    return by_vectors(numbers, arrays.columns, ends, count, next, requested, dim, points + axis);
-  }
-  std::array<const T*, CurvedBlock::kMostAxes> columns{};
-  for (std::size_t k = 0; k < arrays.count; ++k) columns[k] = numbers + arrays.column[k];
-  return set_coordinates(arrays, columns, ends, count, next, requested, dim, points);
+static bool set_of(const CurvedArrays::Numbers<T>& numbers, const Vectors& by_vectors, const CurvedArrays& arrays,
+                   const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
+                   std::size_t requested, std::size_t dim, Real* points) noexcept {
+  if (arrays.columns == CurvedColumns::separate)
+    return set_coordinates(arrays, numbers, ends, count, next, requested, dim, points);
+  return by_vectors(numbers[arrays.first_column], arrays, ends, count, next, requested, dim,
+                    points + arrays.lowest_axis);
 }
 
 template <class Real, class FromFloats, class FromDoubles>
@@ -350,11 +432,8 @@ static bool set_all(const FromFloats& from_floats, const FromDoubles& from_doubl
                     const CurvedBlock::Ends& ends, std::size_t count, const CurvedBlock::Ends& next,
                     std::size_t requested, std::size_t dim, Real* points) noexcept {
   if (!arrays.is_large) requested = 0;
-  if (arrays.floats != nullptr)
-    return set_of_points(arrays.floats, from_floats, arrays, ends, count, next, requested, dim, points);
-  if (arrays.doubles != nullptr)
-    return set_of_points(arrays.doubles, from_doubles, arrays, ends, count, next, requested, dim, points);
-  return set_coordinates(arrays, arrays.values, ends, count, next, requested, dim, points);
+  if (arrays.are_floats) return set_of(arrays.floats, from_floats, arrays, ends, count, next, requested, dim, points);
+  return set_of(arrays.doubles, from_doubles, arrays, ends, count, next, requested, dim, points);
 }
 
 bool interpolate(const CurvedArrays& arrays, const CurvedBlock::Ends& ends, std::size_t count,

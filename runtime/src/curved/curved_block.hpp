@@ -28,21 +28,45 @@ struct CurvedBlock {
   std::uint64_t inside = 0;            ///< bit i: point i is not on an edge, or at its second end
 };
 
-/// Coordinates of samples with the same axes: in arrays of their own, or columns of the same CurvedPoints.
+/// How the coordinates of a sample are in memory.
+enum class CurvedColumns {
+  separate,   ///< anywhere, or side by side in an order that has no vector instructions
+  ascending,  ///< side by side, those of consecutive axes
+  descending  ///< side by side, those of consecutive axes, the last axis first
+};
+
+/// Coordinates of samples with the same axes, of one type, and equally far apart: in arrays of their own, or columns of
+/// points.
 struct CurvedArrays {
   using Strides = std::array<std::size_t, CurvedBlock::kMostAxes>;
+  template <class T>
+  using Numbers = std::array<const T*, CurvedBlock::kMostAxes>;
   Strides strides{};      ///< in numbers, between neighbours along each axis; 0 along axes that the arrays do not have
   bool is_large = false;  ///< whether values do not stay in the nearest caches
-  bool fits_32_bits = false;                                   ///< whether all numbers are counted by std::int32_t
-  std::size_t count = 0;                                       ///< of coordinates
-  std::array<const double*, CurvedBlock::kMostAxes> values{};  ///< by coordinate, if in arrays of their own
-  std::array<std::size_t, CurvedBlock::kMostAxes> column{};    ///< by coordinate, of points
-  std::array<std::size_t, CurvedBlock::kMostAxes> axis{};      ///< of each coordinate
-  const float* floats = nullptr;                               ///< of points, if stored as float
-  const double* doubles = nullptr;                             ///< of points, if stored as double
-  std::size_t columns = 1, pitch = 1;
+  bool fits_32_bits = false;                               ///< whether all numbers are counted by std::int32_t
+  std::size_t count = 0;                                   ///< of coordinates
+  std::size_t pitch = 1;                                   ///< from a sample to the next one, in numbers
+  bool are_floats = false;                                 ///< whether the coordinates are `floats`, not `doubles`
+  Numbers<float> floats{};                                 ///< the first sample's, by coordinate
+  Numbers<double> doubles{};                               ///< the first sample's, by coordinate
+  std::array<std::size_t, CurvedBlock::kMostAxes> axis{};  ///< of each coordinate
+  CurvedColumns columns = CurvedColumns::separate;
+  std::size_t lowest_axis = 0;       ///< of the coordinates, unless they are separate
+  std::size_t first_column = 0;      ///< number of the coordinate that is first in memory, unless they are separate
+  bool may_be_in_two_lines = false;  ///< whether the coordinates of a sample, side by side, may be in two cache lines
 
-  [[nodiscard]] bool are_points() const noexcept { return floats != nullptr || doubles != nullptr; }
+  /// Adds a coordinate. All must be of the same type.
+  void add(const float* first, std::size_t of_axis) noexcept { add_to(floats, first, of_axis); }
+  void add(const double* first, std::size_t of_axis) noexcept { add_to(doubles, first, of_axis); }
+  /// Sets `columns` and what depends on it, for points of `dim` coordinates. After all have been added.
+  void find_columns(std::size_t dim) noexcept;
+
+ private:
+  template <class T>
+  void add_to(Numbers<T>& numbers, const T* first, std::size_t of_axis) noexcept {
+    numbers[count] = first;
+    axis[count++] = of_axis;
+  }
 };
 
 /// Steps of indices by axis: 1 or -1, and 0 along axes without indices.

@@ -36,9 +36,16 @@ void require_curved(const Grid<N>& grid, std::span<const CurvedAxis> curved) {
     if (one.size() != samples)
       fail(fmt::format("{} curved coordinates of axis {}; expected {}, one for each sample", one.size(), one.axis,
                        samples));
-    if (one.values.empty() && one.column >= one.points.columns())
+    if (!one.values.empty()) continue;
+    if (one.column >= one.points.columns())
       fail(fmt::format("column {} of the points for axis {}; expected a number below {}", one.column, one.axis,
                        one.points.columns()));
+    for (const CurvedAxis* other = curved.data(); other != &one; ++other)
+      if (other->values.empty() && other->points.is_same_memory(one.points) && other->column == one.column)
+        fail(
+            fmt::format("the axes {} and {} have the same curved coordinates, column {} of the points; expected "
+                        "coordinates of its own for each axis",
+                        other->axis, one.axis, one.column));
   }
 }
 
@@ -55,29 +62,28 @@ CurvedMap<N>::CurvedMap(const Grid<N>& grid, std::span<const CurvedAxis> curved)
     }
     add_array(axes_[k], strides_[k]);
   }
+  for (CurvedArrays& each : arrays_) each.find_columns(N);
 }
 
 template <int N>
 void CurvedMap<N>::add_array(const CurvedAxis& one, const SampleIndex& strides) {
   CurvedArrays group{};
-  if (one.values.empty()) {
-    group.floats = one.points.floats();
-    group.doubles = one.points.doubles();
-    group.columns = one.points.columns();
-    group.pitch = one.points.pitch();
-  }
+  group.pitch = one.values.empty() ? one.points.pitch() : 1;
+  group.are_floats = one.values.empty() && one.points.floats() != nullptr;
   for (int a = 0; a < N; ++a) group.strides[a] = strides[a] * group.pitch;
   auto same = std::find_if(arrays_.begin(), arrays_.end(), [&](const CurvedArrays& of) {
-    return of.strides == group.strides && of.floats == group.floats && of.doubles == group.doubles;
+    return of.strides == group.strides && of.pitch == group.pitch && of.are_floats == group.are_floats;
   });
   if (same == arrays_.end()) same = arrays_.insert(same, group);
   constexpr std::size_t kLarge = std::size_t{1} << 20;  // bytes
   const std::size_t numbers = one.size() * group.pitch;
-  same->is_large = numbers * (group.floats != nullptr ? sizeof(float) : sizeof(double)) > kLarge;
+  same->is_large = numbers * (group.are_floats ? sizeof(float) : sizeof(double)) > kLarge;
   same->fits_32_bits = numbers <= std::numeric_limits<std::int32_t>::max();
-  same->values[same->count] = one.values.data();
-  same->column[same->count] = one.column;
-  same->axis[same->count++] = static_cast<std::size_t>(one.axis);
+  const auto axis = static_cast<std::size_t>(one.axis);
+  if (group.are_floats)
+    same->add(one.points.floats() + one.column, axis);
+  else
+    same->add(one.values.empty() ? one.points.doubles() + one.column : one.values.data(), axis);
 }
 
 template <int N>
@@ -128,27 +134,25 @@ double CurvedMap<N>::main_orientation() const {
   constexpr std::size_t kAhead = 24;
   double sum = 0.0;
   for (std::size_t i = 0; i < some.size(); ++i) {
-    if (i + kAhead < some.size()) request_corner(some[i + kAhead]);
+    // no function of its own: GCC removes calls of functions that only prefetch
+    for (std::size_t k = 0; k < axes_.size() && i + kAhead < some.size(); ++k) {
+      const CurvedAxis& one = axes_[k];
+      std::size_t here = 0;
+      for (int a = 0; a < N; ++a) here += some[i + kAhead][a] * strides_[k][a];
+      for (int a = -1; a < N; ++a) {
+        const std::size_t at = here + (a < 0 ? 0 : strides_[k][a]), number = one.points.pitch() * at + one.column;
+        if (!one.values.empty())
+          hwy::Prefetch(one.values.data() + at);
+        else if (one.points.floats() != nullptr)
+          hwy::Prefetch(one.points.floats() + number);
+        else
+          hwy::Prefetch(one.points.doubles() + number);
+      }
+    }
     const double sign = orientation(some[i], 0);
     if (!std::isnan(sign)) sum += sign;
   }
   return sum < 0.0 ? -1.0 : 1.0;
-}
-
-template <int N>
-void CurvedMap<N>::request_corner(const SampleIndex& cell) const noexcept {
-  for (std::size_t k = 0; k < axes_.size(); ++k) {
-    const CurvedAxis& one = axes_[k];
-    std::size_t here = 0;
-    for (int a = 0; a < N; ++a) here += cell[a] * strides_[k][a];
-    const auto fetch = [&](std::size_t at) {
-      if (!one.values.empty()) return hwy::Prefetch(one.values.data() + at);
-      if (one.points.floats() != nullptr) return hwy::Prefetch(one.points.floats() + one.points.pitch() * at);
-      hwy::Prefetch(one.points.doubles() + one.points.pitch() * at);
-    };
-    fetch(here);
-    for (int a = 0; a < N; ++a) fetch(here + strides_[k][a]);
-  }
 }
 
 template <int N>

@@ -87,8 +87,6 @@ class CurvedMap {
   }
   /// Adds an array with these strides to `arrays_`.
   void add_array(const CurvedAxis& one, const SampleIndex& strides);
-  /// Starts to load the coordinates that orientation(cell, 0) reads.
-  void request_corner(const SampleIndex& cell) const noexcept;
   /// The coordinate of axes_[k] at a place between any number of samples.
   [[nodiscard]] double inside(std::size_t k, const CellPlace<N>& place) const noexcept;
   [[nodiscard]] double difference(std::size_t k, const SampleIndex& index, int a) const noexcept;

@@ -91,15 +91,36 @@ CurvedPoints::CurvedPoints(std::size_t samples, std::span<const CoordinateArray>
   copy_columns(arrays, samples, threads, allocate<double>(), pitch_);
 }
 
-template <class T, class From>
-void CurvedPoints::continue_blocks(const From* from, std::size_t row, std::size_t block, std::size_t count,
-                                   const double* added) {
+CurvedPoints CurvedPoints::in_place(std::variant<const float*, const double*> first, std::size_t samples,
+                                    std::size_t columns, std::size_t pitch, std::shared_ptr<const void> owner) {
+  if (columns == 0 || columns > kMostColumns || pitch < columns)
+    throw Error(ErrorCode::InvalidArgument, fmt::format("points of {} coordinates, {} numbers apart; expected 1 to {} "
+                                                        "coordinates, and no more than these numbers",
+                                                        columns, pitch, kMostColumns));
+  CurvedPoints points;
+  points.memory_ = std::move(owner);
+  if (const auto* const floats = std::get_if<const float*>(&first))
+    points.floats_ = *floats;
+  else
+    points.doubles_ = std::get<const double*>(first);
+  points.size_ = samples;
+  points.columns_ = columns;
+  points.pitch_ = pitch;
+  return points;
+}
+
+template <class T>
+void CurvedPoints::continue_blocks(const CurvedPoints& from, std::size_t row, std::size_t block, const double* added) {
   T* to = allocate<T>();
-  for (std::size_t b = 0; b < count; ++b, from += pitch_ * block) {
-    to = std::copy_n(from, pitch_ * block, to);
-    for (std::size_t i = 0; i < row; ++i, to += pitch_)
-      for (std::size_t c = 0; c < pitch_; ++c)
-        to[c] = static_cast<T>(static_cast<double>(from[pitch_ * i + c]) + (c < columns_ ? added[c] : 0.0));
+  std::fill_n(to, pitch_ * size_, T{});
+  const auto copy = [&](std::size_t first, std::size_t count, bool moves) {
+    for (std::size_t i = first; i < first + count; ++i, to += pitch_)
+      for (std::size_t c = 0; c < columns_; ++c)
+        to[c] = static_cast<T>(moves ? from(i, c) + added[c] : from(i, c));  // -0 stays
+  };
+  for (std::size_t first = 0; first < from.size_; first += block) {
+    copy(first, block, false);
+    copy(first, row, true);
   }
 }
 
@@ -108,19 +129,15 @@ CurvedPoints CurvedPoints::continued(std::size_t row, std::size_t block, std::sp
   CurvedPoints longer;
   longer.size_ = count * (block + row);
   longer.columns_ = columns_;
-  longer.pitch_ = pitch_;
-  if (floats_ == nullptr) {
-    longer.continue_blocks<double>(doubles_, row, block, count, added.data());
-    return longer;
-  }
-  bool exact = true;
+  longer.pitch_ = std::bit_ceil(columns_);
+  bool exact = floats_ != nullptr;
   for (std::size_t c = 0; c < columns_ && exact; ++c)
     for (std::size_t b = 0; b < count && exact && added[c] != 0.0; ++b)
       for (std::size_t i = 0; i < row; ++i) exact = exact && is_exact<float>((*this)(b * block + i, c) + added[c]);
   if (exact)
-    longer.continue_blocks<float>(floats_, row, block, count, added.data());
+    longer.continue_blocks<float>(*this, row, block, added.data());
   else
-    longer.continue_blocks<double>(floats_, row, block, count, added.data());
+    longer.continue_blocks<double>(*this, row, block, added.data());
   return longer;
 }
 

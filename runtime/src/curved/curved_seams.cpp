@@ -225,32 +225,35 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
     if (a < 0 || a >= N)
       throw Error(ErrorCode::InvalidGrid, fmt::format("a seam of axis {}; expected an axis from 0 to {}", a, N - 1));
     CurvedSeam<N>& seam = seams.emplace_back(CurvedSeam<N>{a, {}});
-    if (!detail::is_axis_curved(curved, a)) {
-      const double longitude = longitude_periods(grid)[a];
-      const double period = longitude != 0.0 ? longitude : sample_periods(grid, std::span(&a, 1))[a];
+    const bool is_given = !periods.empty() && !std::isnan(periods[seams.size() - 1]);
+    if (!is_given && !detail::is_axis_curved(curved, a)) {
+      const double period = default_periods(grid, std::span(&a, 1))[a];
       seam.vector[a] = grid.axes[a].is_descending() ? -period : period;
     }
     for (const CurvedAxis& one : curved) {
-      if ((one.along >> a & 1u) == 0 || !detail::is_longitude_unit(one.unit)) continue;
+      if ((one.along >> a & 1u) == 0 || !is_longitude_unit(one.unit)) continue;
       constexpr double kTurn = 360.0;
       if (const double growth = mean_growth(grid, one, a); std::isfinite(growth))
         seam.vector[one.axis] = kTurn * std::round(growth / kTurn);
     }
-    if (!periods.empty() && !std::isnan(periods[seams.size() - 1]))
-      seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
+    if (is_given) seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
   }
   return seams;
 }
 
 template <int N>
-requires DimensionBetween<N, 2, 4> std::vector<int> longitude_axes(const Grid<N>& grid,
+requires DimensionBetween<N, 2, 5> std::vector<int> longitude_axes(const Grid<N>& grid,
                                                                    std::span<const CurvedAxis> curved) {
-  if (!curved.empty()) detail::require_curved<N>(grid, curved);
+  if constexpr (N == 5) {
+    if (!curved.empty()) throw Error(ErrorCode::InvalidGrid, "a curved grid in 5D; expected 2 to 4 dimensions");
+  } else {
+    if (!curved.empty()) detail::require_curved<N>(grid, curved);
+  }
   const AxisPeriods<N> straight = longitude_periods(grid);
   std::vector<int> axes;
   for (int a = 0; a < N; ++a) {
     const auto continues = [&](const CurvedAxis& one) {
-      return (one.along >> a & 1u) != 0 && detail::is_longitude_unit(one.unit) && is_around(grid, one, a);
+      return (one.along >> a & 1u) != 0 && is_longitude_unit(one.unit) && is_around(grid, one, a);
     };
     const bool is_straight = !detail::is_axis_curved(curved, a);
     if ((is_straight && straight[a] != 0.0) || std::any_of(curved.begin(), curved.end(), continues)) axes.push_back(a);
@@ -273,5 +276,6 @@ TEGL_INSTANTIATE_SEAMS(2)
 TEGL_INSTANTIATE_SEAMS(3)
 TEGL_INSTANTIATE_SEAMS(4)
 #undef TEGL_INSTANTIATE_SEAMS
+template std::vector<int> longitude_axes<5>(const Grid<5>&, std::span<const CurvedAxis>);
 
 }  // namespace tegl

@@ -23,6 +23,7 @@
 #include "complex/point_gradients.hpp"
 #include "division/divided_cell.hpp"
 #include "division/divided_contour.hpp"
+#include "division/stored_division.hpp"
 #include "image/line_kernel.hpp"
 #include "image/row_source.hpp"
 #include "kernel/extract_normals.hpp"
@@ -202,12 +203,7 @@ class Divider {
   std::array<std::unordered_map<Index, Index>, kAll + 1> centres_;  ///< by axes and lowest corner
 };
 
-/// A complex with the faces of which its points behind the samples are centres: the axes, and the lowest corner.
-template <int N>
-struct DividedImage {
-  Complex<N> complex;
-  std::vector<std::pair<unsigned, Index>> centres;
-};
+using detail::DividedImage;
 
 template <int N>
 DividedImage<N> divided(const Grid<N>& grid, std::vector<double> values, Division division, double isovalue) {
@@ -283,11 +279,6 @@ std::string_view name_of(Division division) noexcept {
 
 namespace {
 
-template <int N>
-[[nodiscard]] bool any_periodic(const AxisPeriods<N>& periods) {
-  return std::ranges::any_of(periods, [](double period) { return period != 0.0; });
-}
-
 /// Throws InvalidArgument for divisions that the dimension does not have.
 void require_division(Division division, int dim) {
   if (dim >= 4 && (division == Division::alternating || division == Division::hybrid))
@@ -312,101 +303,53 @@ void require_short_steps(const Grid<N>& grid, const AxisPeriods<N>& periods) {
   }
 }
 
-/// Throws the errors of arguments that contours of divided images do not have.
+}  // namespace
+
+namespace detail {
+
 template <int N>
-void require_arguments(const Grid<N>& grid, Division division, double isovalue, const ExtractOptions& options,
-                       const AxisPeriods<N>& periods) {
+void check_division_arguments(const Grid<N>& grid, Division division, double isovalue, const ExtractOptions& options,
+                              const AxisPeriods<N>& periods) {
   require_division(division, N);
   ExtractOptions of_complexes = options;
   of_complexes.normals = Normals::none;
-  detail::check_complex_options(isovalue, of_complexes);
+  check_complex_options(isovalue, of_complexes);
   if (options.normals == Normals::context)
     throw Error(ErrorCode::InvalidArgument, "normals context of a divided image; expected gradients of other kinds");
   if (N == 5 && options.triangulation != Triangulation::compact)
     throw Error(ErrorCode::InvalidArgument, "triangulation barycentric of a divided 5D image; expected compact");
-  if (options.normals == Normals::kernel) (void)detail::line_kernel_of<N>(options.kernel);
+  if (options.normals == Normals::kernel) (void)line_kernel_of<N>(options.kernel);
   if (!any_periodic<N>(periods)) return;
-  detail::check_periods<N>(grid, periods, options);
+  check_periods<N>(grid, periods, options);
   if constexpr (N <= 4) require_short_steps<N>(grid, periods);
   for (int a = 0; a < N; ++a)
     if (division == Division::alternating && periods[a] != 0.0 && grid.axes[a].size() % 2 != 0)
       throw Error(ErrorCode::InvalidArgument,
                   fmt::format("division alternating: {} is periodic and has {} samples; expected an even number, as "
                               "neighbouring cells are mirror images",
-                              detail::label_of_axis(grid.axes[a], a), grid.axes[a].size()));
+                              label_of_axis(grid.axes[a], a), grid.axes[a].size()));
 }
 
-/// The gradients at the samples of an image. With periodic axes, from a copy with one more sample before and two more
-/// behind along these.
 template <Value T, int N>
-class ImageGradients {
- public:
-  using Sample = std::array<std::size_t, N>;
+DividedImage<N> divide_image(const Image<T, N>& image, Division division, double isovalue,
+                             const AxisPeriods<N>& periods) {
+  if (any_periodic<N>(periods)) return divided_periodic(image, division, isovalue, periods);
+  return divided(image.grid(), values_of(image), division, isovalue);
+}
 
-  /// `image` must outlive this object.
-  ImageGradients(const Image<T, N>& image, const AxisPeriods<N>& periods) : view_(image) {
-    if (!any_periodic<N>(periods)) return;
-    wider_.grid = image.grid();
-    for (int a = 0; a < N; ++a) {
-      if (periods[a] == 0.0) continue;
-      before_[a] = 1;
-      wider_.grid.axes[a] = detail::wrapped_axis(image.grid().axes[a], periods[a], 1, 2);
-    }
-    detail::for_each_sample<N>(wider_.grid.sizes(), [&](Sample index) {
-      for (int a = 0; a < N; ++a) index[a] = (index[a] + image.size(a) - before_[a]) % image.size(a);
-      wider_.values.push_back(image(index));
-    });
-    view_ = wider_.view();
-  }
-  ImageGradients(const ImageGradients&) = delete;
-  ImageGradients& operator=(const ImageGradients&) = delete;
+}  // namespace detail
 
-  [[nodiscard]] const Image<T, N>& view() const noexcept { return view_; }
-  [[nodiscard]] const Sample& before() const noexcept { return before_; }
+namespace {
 
- private:
-  OwnedImage<T, N> wider_;
-  Image<T, N> view_;
-  Sample before_{};
-};
+using detail::any_periodic;
+using detail::ImageGradients;
 
 /// Extracts the contour of a complex of a divided image.
 template <class Real, Value T, int N>
-Extraction<N, Real> extract_stored(const Image<T, N>& image, Division division, double isovalue, ExtractOptions options,
-                                   const AxisPeriods<N>& periods) {
-  const Grid<N>& grid = image.grid();
-  const std::size_t samples = detail::count_samples(grid, "a divided image");
-  const bool is_periodic = any_periodic<N>(periods);
-  const DividedImage<N> made = is_periodic ? divided_periodic(image, division, isovalue, periods)
-                                           : divided(grid, detail::values_of(image), division, isovalue);
-  detail::Surroundings<N> around;
-  if (is_periodic) around.periods = detail::world_periods<N>(grid, periods);
-  if (options.normals == Normals::none) return detail::extract_in<Real>(made.complex, isovalue, options, around);
-  // normals from the gradients at samples, with means at centres
-  const ImageGradients<T, N> gradients(image, periods);
-  const detail::ImageSource<T, N> source(gradients.view(), isovalue, options.epsilon);
-  const detail::NormalWriter<N, double> at_samples(source, gradients.view().grid(), GradientDirection::ascent,
-                                                   options.normals, options.kernel);
-  const auto sizes = grid.sizes();
-  const auto at = [&](std::array<std::size_t, N> index) {
-    for (int a = 0; a < N; ++a) index[a] = index[a] % sizes[a] + gradients.before()[a];
-    return at_samples.in_world_at(index);
-  };
-  around.gradient = [&](Index p) {
-    if (p < samples) return at(detail::index_of<N>(p, sizes));
-    const auto& [axes, lowest] = made.centres[p - samples];
-    const std::vector<unsigned> corners = detail::corner_masks({0, axes});
-    std::array<double, N> mean{};
-    for (const unsigned corner : corners) {
-      auto index = detail::index_of<N>(lowest, sizes);
-      for (int a = 0; a < N; ++a) index[a] += corner >> a & 1u;
-      const std::array<double, N> gradient = at(index);
-      for (int a = 0; a < N; ++a) mean[a] += gradient[a] / static_cast<double>(corners.size());
-    }
-    return mean;
-  };
-  options.normals = Normals::differences;  // whatever `around.gradient` has
-  return detail::extract_in<Real>(made.complex, isovalue, options, around);
+Extraction<N, Real> extract_stored(const Image<T, N>& image, Division division, double isovalue,
+                                   const ExtractOptions& options, const AxisPeriods<N>& periods) {
+  const detail::StoredDivision<T, N> stored(image, division, isovalue, options, periods);
+  return detail::extract_in<Real>(stored.complex(), isovalue, stored.options(options), stored.surroundings());
 }
 
 /// The contour of a 5D image, or its size if `contour` is null.
@@ -455,7 +398,7 @@ requires DimensionBetween<N, 2, 5> Extraction<N, Real> extract_divided_with_stat
                                                                                   Division division, double isovalue,
                                                                                   const ExtractOptions& options,
                                                                                   const AxisPeriods<N>& periods) {
-  require_arguments<N>(image.grid(), division, isovalue, options, periods);
+  detail::check_division_arguments<N>(image.grid(), division, isovalue, options, periods);
   if constexpr (N <= 4) {
     return extract_stored<Real>(image, division, isovalue, options, periods);
   } else {
@@ -474,7 +417,7 @@ template <Value T, int N>
 requires DimensionBetween<N, 2, 5> ContourSize count_divided(const Image<T, N>& image, Division division,
                                                              double isovalue, const ExtractOptions& asked,
                                                              const AxisPeriods<N>& periods) {
-  require_arguments<N>(image.grid(), division, isovalue, asked, periods);
+  detail::check_division_arguments<N>(image.grid(), division, isovalue, asked, periods);
   ExtractOptions options = asked;
   options.normals = Normals::none;  // not counted: one per vertex
   if constexpr (N == 5) {
@@ -486,11 +429,25 @@ requires DimensionBetween<N, 2, 5> ContourSize count_divided(const Image<T, N>& 
   }
 }
 
+#define TEGL_INSTANTIATE_DIVIDE(T, N)                                                               \
+  template detail::DividedImage<N> detail::divide_image<T, N>(const Image<T, N>&, Division, double, \
+                                                              const AxisPeriods<N>&);
 #define TEGL_INSTANTIATE(T)                                                        \
+  TEGL_INSTANTIATE_DIVIDE(T, 2)                                                    \
+  TEGL_INSTANTIATE_DIVIDE(T, 3)                                                    \
+  TEGL_INSTANTIATE_DIVIDE(T, 4)                                                    \
   template Complex<2> divided_complex<T, 2>(const Image<T, 2>&, Division, double); \
   template Complex<3> divided_complex<T, 3>(const Image<T, 3>&, Division, double); \
   template Complex<4> divided_complex<T, 4>(const Image<T, 4>&, Division, double);
 #include "base/instantiate.hpp"
+#undef TEGL_INSTANTIATE_DIVIDE
+
+template void detail::check_division_arguments<2>(const Grid<2>&, Division, double, const ExtractOptions&,
+                                                  const AxisPeriods<2>&);
+template void detail::check_division_arguments<3>(const Grid<3>&, Division, double, const ExtractOptions&,
+                                                  const AxisPeriods<3>&);
+template void detail::check_division_arguments<4>(const Grid<4>&, Division, double, const ExtractOptions&,
+                                                  const AxisPeriods<4>&);
 
 #define TEGL_INSTANTIATE_DIMENSIONS(T, N)                                                                              \
   template Extraction<N, float> extract_divided_with_stats<float, T, N>(const Image<T, N>&, Division, double,          \

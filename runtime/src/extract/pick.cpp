@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/function_ref.hpp"
+#include "base/nearest_item.hpp"
 #include "base/progress.hpp"
 #include "image/locate.hpp"
 #include "kernel/extract_in_memory.hpp"
@@ -125,27 +126,22 @@ template <int N, class Real>
 Index nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
                         const detail::GridLocator<N>& locator, const std::type_identity_t<std::array<double, N>>& at,
                         const std::vector<bool>& allowed, const Progress& progress) {
+  constexpr double kNowhere = std::numeric_limits<double>::infinity();
+  const detail::NearestItem nearest =
+      detail::nearest_item(contour.vertices.size(), progress, [&](std::size_t v) -> double {
+        if (labels.vertices[v] == kNoComponent || !allowed[labels.vertices[v]]) return kNowhere;
+        std::array<double, N> world;
+        for (int a = 0; a < N; ++a) world[a] = static_cast<double>(contour.vertices[v][a]);
+        detail::CellPlace<N> place;
+        if (!locator.find_nearest(world, place)) return kNowhere;
+        const auto here = in_steps(place);
+        double square = 0;
+        for (int a = 0; a < N; ++a) square += (here[a] - at[a]) * (here[a] - at[a]);
+        return square;
+      });
+  if (nearest.item != detail::NearestItem::kNone) return labels.vertices[nearest.item];
   const auto first = std::find(allowed.begin(), allowed.end(), true);
-  Index nearest = first == allowed.end() ? kNoComponent : static_cast<Index>(first - allowed.begin());
-  double least = std::numeric_limits<double>::infinity();
-  const auto look_at = [&](std::size_t v) {
-    if (labels.vertices[v] == kNoComponent || !allowed[labels.vertices[v]]) return;
-    std::array<double, N> world;
-    for (int a = 0; a < N; ++a) world[a] = static_cast<double>(contour.vertices[v][a]);
-    detail::CellPlace<N> place;
-    if (!locator.find_nearest(world, place)) return;
-    const auto here = in_steps(place);
-    double square = 0;
-    for (int a = 0; a < N; ++a) square += (here[a] - at[a]) * (here[a] - at[a]);
-    if (square < least) {
-      least = square;
-      nearest = labels.vertices[v];
-    }
-  };
-  detail::in_parts(contour.vertices.size(), progress, [&](std::size_t from, std::size_t to) {
-    for (std::size_t v = from; v < to; ++v) look_at(v);
-  });
-  return nearest;
+  return first == allowed.end() ? kNoComponent : static_cast<Index>(first - allowed.begin());
 }
 
 /// Options for a contour with the same simplices whose vertices lie off the corners of tiles.

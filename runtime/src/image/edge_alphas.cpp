@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "image/edge_alphas.hpp"
+#include "image/cube_heights.hpp"
 #include "tegl/table_contract.hpp"
 #include "tegl/tile/corners.hpp"
 
@@ -159,11 +160,19 @@ void alphas_4d(const double* corners, double isovalue, double epsilon, double* o
 /// Interpolation parameters of all edges of cells.
 void alphas_by_edges(unsigned dim, const double* corners, std::size_t count, std::size_t pitch, double isovalue,
                      double epsilon, double* out) {
-  for (unsigned e = 0; e < dim << (dim - 1); ++e) {
-    const unsigned base = edge_base(dim, e);
-    alphas_of(corners + base * pitch, corners + (base | 1u << (e >> (dim - 1))) * pitch, count, isovalue, epsilon,
-              out + e * pitch);
-  }
+  const auto of_edges = [&](auto number) HWY_ATTR {
+    for (unsigned e = 0; e < dim << (dim - 1); ++e) {
+      const unsigned base = edge_base(dim, e);
+      alphas_of(corners + base * pitch, corners + (base | 1u << (e >> (dim - 1))) * pitch, number, isovalue, epsilon,
+                out + e * pitch);
+    }
+  };
+  // mostly as many cells as there can be: a constant, so that the compiler unrolls the loop over them
+  constexpr std::integral_constant<std::size_t, CubeRays::kMost> kMost;
+  if (count == kMost)
+    of_edges(kMost);
+  else
+    of_edges(count);
 }
 
 #define TEGL_EDGES(T, name)                                                              \

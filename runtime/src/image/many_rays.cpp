@@ -171,7 +171,10 @@ void levels_of_tesseract(const std::array<double, 16>& products, double epsilon,
   const auto one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), zero = hn::Zero(d);
   const LevelsInside inside(epsilon);
   const std::size_t end = (rays.count + lanes - 1) / lanes * lanes;
-  for (auto& ends : rays.ends) std::fill(ends.begin() + rays.count, ends.begin() + end, 0.0);
+  const std::size_t last = end - lanes;  // the register that may not be full; there is at least one ray
+  for (auto& ends : rays.ends)
+    hn::Store(hn::IfThenElseZero(hn::FirstN(d, rays.count - last), hn::Load(d, ends.data() + last)), d,
+              ends.data() + last);
   const auto polynomials_at = [&](std::size_t i) HWY_ATTR {
     RayLanes u[4];
     for (std::size_t a = 0; a < 4; ++a) u[a] = hn::Sub(hn::Mul(two, hn::Load(d, rays.ends[a].data() + i)), one);

@@ -85,7 +85,7 @@ class CellParts {
     if (lattice_ == Lattice::fcc_in_time && !is_ring && part.first + 1 == part.end) return;  // no interval is left
     auto made = cells_.of(part, options.close, {options.work.threads});
     made.complex.set_values(values_in(window, made.layers));
-    Grid<N> at_start = window.grid();  // weights of gradients as for the whole image
+    Grid<N> at_start = window.grid();  // even if the image's is
     if (const Axis& axis = grid_.axes[N - 1]; axis.is_uniform())
       at_start.axes[N - 1] = Axis::uniform(window.size(N - 1), axis[0], axis.step());
     const Image<T, N> around_part(window.data(), at_start, window.strides());
@@ -98,7 +98,9 @@ class CellParts {
     around.periods = contour_periods_;
     if (options.close) around.border = &made.border;
     if (options.normals != Normals::none) {
-      gradients.emplace(source, at_start, lattice_, options.direction, periodic, contour_periods_);
+      AxisPeriods<N> across = periods_;  // the window's layers do not repeat themselves
+      across[N - 1] = 0.0;
+      gradients.emplace(source, at_start, lattice_, options.direction, across);
       around.gradient = [&, sizes = window.grid().sizes()](Index p) {
         return gradients->at(index_of<N>(in_window(made.layers, p), sizes));
       };

@@ -55,7 +55,7 @@ class StoredLattice {
         source_(image, isovalue, options.epsilon) {
     if (periodic_ != 0) around_.periods = world_periods<N>(image.grid(), periods);
     if (options.normals == Normals::none) return;
-    gradients_.emplace(source_, image.grid(), lattice, options.direction, periodic_, around_.periods);
+    gradients_.emplace(source_, image.grid(), lattice, options.direction, periods);
     around_.gradient = [this, sizes = image.grid().sizes()](Index p) { return gradients_->at(index_of<N>(p, sizes)); };
   }
   // around_ and gradients_ refer to other members

@@ -129,9 +129,9 @@ class LatticeStream {
     stats_.find_seconds += stats.find_seconds;
     stats_.generate_seconds += stats.generate_seconds;
     if (!weighs_as_whole) return std::move(contour);
-    // by weights from the image's first layers
+    // the layers of a part are stored as coordinates: normals need the axis, but not its places
     Grid<N> at_start = window.grid();
-    at_start.axes[N - 1] = grid_.axes[N - 1].part(0, window.size(N - 1));
+    at_start.axes[N - 1] = Axis::uniform(window.size(N - 1), grid_.axes[N - 1].origin(), grid_.axes[N - 1].step());
     const Image<T, N> moved(window.data(), at_start, window.strides());
     contour.normals = std::move(extract_lattice<Real>(moved, lattice_, isovalue_, options).normals);
     return std::move(contour);

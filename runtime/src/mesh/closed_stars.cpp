@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Faces of closed stars. A triangle at the centre v of a star is an edge of v's link, directed as its tetrahedron
-// orients it: one word of 64 bits. Each word is compared with the reverses of all others of the star, several at a
-// time, which is faster than a table for the few that there are. Highway's foreach_target compiles this file once per
-// instruction set.
+// orients it. Each is compared with the reverses of all others of the star, several at a time, which is faster than a
+// table for the few that there are. Highway's foreach_target compiles this file once per instruction set.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include "mesh/closed_stars.hpp"
 #include "tegl/incidence.hpp"
@@ -16,6 +17,7 @@
 #define HWY_TARGET_INCLUDE "mesh/closed_stars.cpp"
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
+#include "base/star_neighbours.hpp"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,15 +26,18 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-#if HWY_TARGET != HWY_SCALAR
+#if HWY_TARGET != HWY_SCALAR && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
 
-/// The edges of v's link between vertices above v, in one tetrahedron with v.
+/// The edges of v's link between vertices above v, in one tetrahedron with v. A tetrahedron with one vertex above has
+/// an edge from there to v, so that all vertices above are starts of edges.
 struct Arrows {
-  /// Places in the tetrahedron: the start and the end of each edge. Tetrahedra with one vertex above: its place first.
+  /// By edge, the place of its start in the tetrahedron, then that of its end; for registers of four 16-bit or of eight
+  /// 32-bit numbers of vertices.
   alignas(32) std::array<std::uint32_t, 8> places{};
+  alignas(16) std::array<std::uint8_t, 16> bytes{};
+  /// Sums of three kinds in one number: edges, and from bits 16 and 32 on those that end at v, and tetrahedra above v.
+  std::uint64_t counts = 0;
   std::array<std::uint8_t, 4> omitted{};  ///< by edge: the place of the vertex that is neither v nor one of its ends
-  std::uint8_t count = 0;                 ///< edges
-  std::uint8_t single = 0;                ///< 1 if there is one vertex above
 };
 
 /// By the set of places of vertices above v, plus 16 times the set that contains the place of v.
@@ -46,187 +51,242 @@ constexpr std::array<Arrows, 256> make_arrows() {
       for (unsigned i = 0, k = 0; i < 4; ++i)
         if (i != at) others[k++] = i;
       if (at % 2 == 1) others = {others[0], others[2], others[1]};
-      unsigned above_count = 0;
+      const bool is_single = above != 0 && (above & (above - 1)) == 0;
+      unsigned count = 0;
       for (unsigned i = 0; i < 3; ++i) {
-        const std::uint32_t from = others[i], to = others[(i + 1) % 3];
-        if ((above >> from & 1u) == 0) continue;
-        if (++above_count == 1 && arrows.count == 0) arrows.places[0] = from;
-        if ((above >> to & 1u) == 0) continue;
-        arrows.places[2 * arrows.count] = from;
-        arrows.places[2 * arrows.count + 1] = to;
-        arrows.omitted[arrows.count] = static_cast<std::uint8_t>(6 - at - from - to);
-        ++arrows.count;
+        const std::uint32_t from = others[i], to = is_single ? at : others[(i + 1) % 3];
+        if ((above >> from & 1u) == 0 || (!is_single && (above >> to & 1u) == 0)) continue;
+        arrows.places[2 * count] = from;
+        arrows.places[2 * count + 1] = to;
+        arrows.omitted[count] = static_cast<std::uint8_t>(is_single ? at : 6 - at - from - to);
+        ++count;
       }
-      arrows.single = above_count == 1 ? 1 : 0;
+      for (unsigned i = 0; i < 16; ++i) arrows.bytes[i] = static_cast<std::uint8_t>(4 * arrows.places[i / 2] + i % 2);
+      arrows.counts = count | std::uint64_t{is_single} << 16 | std::uint64_t{count == 3} << 32;
     }
   return all;
 }
 constexpr std::array<Arrows, 256> kArrows = make_arrows();
 
-/// Counts one star at a time.
-class Counter {
+constexpr std::size_t kMostArrows = 3 * kMostInStar;
+
+/// The directed edges of one link at a time. Key: std::uint32_t for vertices whose numbers exceed that of the centre by
+/// less than 2^16, as nearly all do unless the contour is large, or std::uint64_t for any vertices.
+template <class Key>
+class LinkEdges {
  public:
-  HWY_INLINE ClosedStar count(const Index* rows, Index v, std::span<const Index> star, bool with_edges,
-                              ClosedStars* more) {
+  /// `star`: of Stars. False if a vertex number is too large.
+  HWY_INLINE bool load(const Index* rows, Index v, std::span<const Index> star, bool with_across) {
+    const hn::FixedTag<std::uint32_t, 4> d;
+    const auto centre = hn::Set(d, v);
+    auto farthest = hn::Zero(d);
+    std::uint64_t counts = 0;
+    // Without a branch that depends on the tetrahedra: which vertices are above v varies irregularly.
+    for (const Index& member : star) {
+      const Index s = member;
+      __builtin_prefetch(rows + std::size_t{(&member)[kAhead]} * 4);  // most are in the third level of cache
+      const Index* const row = rows + std::size_t{s} * 4;
+      const auto vertices = hn::LoadU(d, row);
+      const auto is_above = hn::Gt(vertices, centre);
+      const auto beyond = hn::Sub(vertices, centre);
+      const Arrows& arrows = kArrows[word_of(d, is_above) | word_of(d, hn::Eq(vertices, centre)) << 4];
+      const std::size_t first = counts & 0xffff;
+      store(row, hn::BitCast(hn::Repartition<std::uint8_t, decltype(d)>(), beyond), arrows, keys_.data() + first);
+      farthest = hn::Or(farthest, hn::IfThenElseZero(is_above, beyond));
+      if (with_across) {
+        hn::StoreU(hn::Set(d, s), d, tetrahedra_of_.data() + first);
+        std::memcpy(omitted_.data() + first, arrows.omitted.data(), 4);
+      }
+      counts += arrows.counts;
+    }
+    size_ = counts & 0xffff;
+    singles_ = counts >> 16 & 0xffff;
+    tetrahedra_ = counts >> 32;
+    return kIsWide || hn::AllTrue(d, hn::Lt(farthest, hn::Set(d, 1u << 16)));
+  }
+
+  /// Counts what was loaded.
+  HWY_INLINE ClosedStar count(Index v, bool with_edges, ClosedStars* more) {
     ClosedStar found;
-    if (star.size() > kMostTetrahedra) return found;
-    load(rows, v, star, more != nullptr);
     const std::size_t paired = find_reverses();
-    if (paired != arrows_ && (more == nullptr || repeats_one())) return found;
+    if (is_repeated_) return found;
+    open_ = 0;
+    if (paired != size_ - singles_ && (more == nullptr || !list_open(v))) return found;
     if (more != nullptr) write_across(more->across);
     found.is_settled = true;
-    found.triangles = static_cast<std::uint16_t>(arrows_ - paired / 2);
-    found.boundary = static_cast<std::uint16_t>(arrows_ - paired);
+    found.triangles = static_cast<std::uint16_t>(paired / 2 + open_);
+    found.boundary = static_cast<std::uint16_t>(open_);
     found.tetrahedra = static_cast<std::uint16_t>(tetrahedra_);
-    if (with_edges) found.edges = static_cast<std::uint16_t>(count_edges(paired != arrows_, more));
+    if (!with_edges) return found;
+    // the ends of edges without a reverse may be no starts
+    for (std::size_t k = 0; k < open_; ++k) keys_[size_ + k] = reverse_of(keys_[open_edges_[k]]);
+    size_ += open_;
+    found.edges = static_cast<std::uint16_t>(count_starts(v, more));
     return found;
   }
 
  private:
-  static constexpr std::size_t kMostTetrahedra = 64;
-  static constexpr std::size_t kMostLanes = 16;  ///< of 32-bit words
-  static constexpr std::size_t kMostArrows = 3 * kMostTetrahedra;
-  static constexpr std::size_t kPadding = 32;  ///< at least the lanes of four vectors of 64-bit words
+  static constexpr bool kIsWide = sizeof(Key) == 8;
+  using Vertex = std::conditional_t<kIsWide, std::uint32_t, std::uint16_t>;  ///< without the centre's number if narrow
+  using Keys = hn::ScalableTag<Key>;
+  using Vertices = hn::ScalableTag<Vertex>;
+  static constexpr std::size_t kKeys = hn::MaxLanes(Keys());
+  static constexpr std::size_t kVertices = hn::MaxLanes(Vertices());
+  static constexpr std::size_t kAtOnce = 4 * kKeys;  ///< two registers of vertices
+  static constexpr Key kOnce = 256;                  ///< more than any place
 
-  /// Without a branch that depends on the tetrahedra: which vertices are above v varies irregularly.
-  HWY_INLINE void load(const Index* rows, Index v, std::span<const Index> star, bool with_tetrahedra) {
+  static Key reverse_of(Key key) noexcept { return std::rotl(key, 4 * sizeof(Key)); }
+
+  /// Stores up to four edges.
+  static HWY_INLINE void store(const Index* row, hn::Vec<hn::FixedTag<std::uint8_t, 16>> beyond, const Arrows& arrows,
+                               Key* to) {
+    const hn::FixedTag<std::uint8_t, 16> d8;
     const hn::CappedTag<std::uint32_t, 8> d;
-    const hn::FixedTag<std::uint32_t, 4> d4;
-    const auto centre = hn::Set(d4, v);
-    std::size_t singles = 0, tetrahedra = 0, arrow = 0;
-    for (const Index s : star) {
-      const Index* const row = rows + std::size_t{s} * 4;
-      const auto vertices = hn::LoadU(d4, row);
-      std::uint8_t bits[16] = {};
-      hn::StoreMaskBits(d4, hn::Gt(vertices, centre), bits);
-      hn::StoreMaskBits(d4, hn::Eq(vertices, centre), bits + 8);
-      const Arrows& arrows = kArrows[static_cast<unsigned>(bits[0]) | static_cast<unsigned>(bits[8]) << 4];
-      const auto repeated = hn::LoadDup128(d, row);
-      for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
-        const auto ends = hn::TableLookupLanes(repeated, hn::SetTableIndices(d, arrows.places.data() + k));
-        if (k == 0) singles_[singles] = hn::GetLane(ends);
-        hn::StoreU(ends, d, ends_.data() + 2 * arrow + k);
-      }
-      if (with_tetrahedra) {
-        hn::StoreU(hn::Set(d4, s), d4, tetrahedra_of_.data() + arrow);
-        std::memcpy(omitted_.data() + arrow, arrows.omitted.data(), 4);
-      }
-      singles += arrows.single;
-      tetrahedra += arrows.count == 3 ? 1 : 0;
-      arrow += arrows.count;
+    auto* const out = reinterpret_cast<std::uint8_t*>(to);
+    if constexpr (!kIsWide) return hn::StoreU(hn::TableLookupBytes(beyond, hn::Load(d8, arrows.bytes.data())), d8, out);
+    const auto repeated = hn::LoadDup128(d, row);
+    const hn::Repartition<std::uint8_t, decltype(d)> d_bytes;
+    for (std::size_t k = 0; k < 8; k += hn::Lanes(d)) {
+      const auto ends = hn::TableLookupLanes(repeated, hn::SetTableIndices(d, arrows.places.data() + k));
+      hn::StoreU(hn::BitCast(d_bytes, ends), d_bytes, out + 4 * k);
     }
-    arrows_ = arrow;
-    single_count_ = singles;
-    tetrahedra_ = tetrahedra;
   }
 
-  /// Sets the places of the reverses of the directed edges; kMostArrows for those without one. Returns the number of
-  /// edges that occur once and whose reverse occurs once.
+  /// Sets the places of the reverses of the edges, plus kOnce; 0 for those without one. Returns the number of edges
+  /// with a reverse, and sets `is_repeated_` if an edge has several.
   HWY_INLINE std::size_t find_reverses() {
-    const std::size_t lanes = hn::Lanes(hn::ScalableTag<std::uint64_t>());
-    std::size_t j = 0;
-    for (; arrows_ > j + 3 * lanes; j += 4 * lanes) find_reverses_of<4>(j);
-    if (arrows_ > j + 2 * lanes)
-      find_reverses_of<3>(j);
-    else if (arrows_ > j + lanes)
-      find_reverses_of<2>(j);
-    else if (arrows_ > j)
-      find_reverses_of<1>(j);
-    // An edge that occurs twice is not the reverse of its reverse at one of the two places.
-    places_[kMostArrows] = kMostArrows;
-    std::size_t paired = 0;
-    for (std::size_t i = 0; i < arrows_; ++i) paired += places_[places_[i]] == i ? 1 : 0;
+    is_repeated_ = false;
+    std::size_t paired = 0, j = 0;
+    for (; size_ > j + 3 * kKeys; j += 4 * kKeys) paired += find_reverses_of<4>(j);
+    if (size_ > j + 2 * kKeys)
+      paired += find_reverses_of<3>(j);
+    else if (size_ > j + kKeys)
+      paired += find_reverses_of<2>(j);
+    else if (size_ > j)
+      paired += find_reverses_of<1>(j);
     return paired;
   }
-  /// For the directed edges in kVectors vectors, from number j.
-  template <int kVectors>
-  HWY_INLINE void find_reverses_of(std::size_t j) {
-    const hn::ScalableTag<std::uint64_t> d;
-    const hn::Repartition<std::uint32_t, decltype(d)> d_ends;
-    const std::size_t lanes = hn::Lanes(d);
-    const auto one = hn::Set(d, std::uint64_t{1});
-    hn::Vec<decltype(d)> reverse[kVectors], places[kVectors];
-    for (int k = 0; k < kVectors; ++k) {
-      const std::uint32_t* const ends = ends_.data() + 2 * (j + static_cast<std::size_t>(k) * lanes);
-      reverse[k] = hn::BitCast(d, hn::Shuffle2301(hn::LoadU(d_ends, ends)));
-      places[k] = hn::Set(d, std::uint64_t{kMostArrows});
+  /// For the edges in kVectors vectors, from number j.
+  template <std::size_t kVectors>
+  HWY_INLINE std::size_t find_reverses_of(std::size_t j) {
+    const Keys d;
+    hn::Vec<Keys> keys[kVectors], places[kVectors];
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      keys[k] = hn::LoadU(d, keys_.data() + j + k * kKeys);
+      places[k] = hn::Zero(d);
     }
-    auto place = hn::Zero(d);
-    for (std::size_t i = 0; i < arrows_; ++i) {
-      std::uint64_t arrow;
-      std::memcpy(&arrow, ends_.data() + 2 * i, sizeof arrow);
-      const auto here = hn::Set(d, arrow);
-      for (int k = 0; k < kVectors; ++k) places[k] = hn::IfThenElse(hn::Eq(reverse[k], here), place, places[k]);
+    auto place = hn::Set(d, kOnce);
+    const auto one = hn::Set(d, Key{1});
+    for (std::size_t i = 0; i < size_; ++i) {
+      const auto reverse = hn::Set(d, reverse_of(keys_[i]));
+      for (std::size_t k = 0; k < kVectors; ++k) places[k] = add_where(d, hn::Eq(keys[k], reverse), places[k], place);
       place = hn::Add(place, one);
     }
-    for (int k = 0; k < kVectors; ++k)
-      hn::StoreU(places[k], d, places_.data() + j + static_cast<std::size_t>(k) * lanes);
-  }
-
-  /// Whether a directed edge occurs twice.
-  [[nodiscard]] bool repeats_one() const {
-    for (std::size_t i = 0; i < arrows_; ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (ends_[2 * i] == ends_[2 * j] && ends_[2 * i + 1] == ends_[2 * j + 1]) return true;
-    return false;
-  }
-
-  HWY_INLINE void write_across(Index* across) const {
-    for (std::size_t i = 0; i < arrows_; ++i)
-      across[std::size_t{tetrahedra_of_[i]} * 4 + omitted_[i]] =
-          places_[i] == kMostArrows ? kNoSimplex : tetrahedra_of_[places_[i]];
-  }
-
-  /// The number of different vertices of the link above v: the starts of edges, the ends of edges without a reverse
-  /// (with `boundary`), and the vertices without such an edge.
-  HWY_INLINE std::size_t count_edges(bool boundary, ClosedStars* more) {
-    const hn::ScalableTag<std::uint32_t> d;
-    const std::size_t lanes = hn::Lanes(d);
-    std::size_t count = arrows_ + single_count_;
-    for (std::size_t i = 0; i < arrows_; ++i) starts_[i] = ends_[2 * i];
-    for (std::size_t i = 0; i < single_count_; ++i) starts_[arrows_ + i] = singles_[i];
-    for (std::size_t i = 0; boundary && i < arrows_; ++i)
-      if (places_[i] == kMostArrows) starts_[count++] = ends_[2 * i + 1];
-    std::size_t repeats = 0;
-    for (std::size_t j = 0; j < count; j += lanes) {
-      const auto here = hn::LoadU(d, starts_.data() + j);
-      const auto number = hn::Iota(d, static_cast<std::uint32_t>(j));
-      // repeats of those before this vector, then of those within it
-      auto is_repeat = hn::MaskFromVec(hn::Zero(d));
-      for (std::size_t i = 0; i < j; ++i) is_repeat = hn::Or(is_repeat, hn::Eq(here, hn::Set(d, starts_[i])));
-      for (std::size_t i = j; i < j + lanes && i < count; ++i)
-        is_repeat = hn::Or(is_repeat, hn::And(hn::Eq(here, hn::Set(d, starts_[i])),
-                                              hn::Gt(number, hn::Set(d, static_cast<std::uint32_t>(i)))));
-      const auto is_new = hn::AndNot(is_repeat, hn::FirstN(d, count - j));
-      repeats += std::min(lanes, count - j) - hn::CountTrue(d, is_new);
-      if (more != nullptr) {
-        std::array<std::uint32_t, kMostLanes> kept;
-        const std::size_t size = hn::CompressBlendedStore(here, is_new, d, kept.data());
-        more->edges.insert(more->edges.end(), kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(size));
-      }
+    std::size_t paired = 0;
+    auto repeated = hn::MaskFromVec(hn::Zero(d));
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const std::size_t first = j + k * kKeys;
+      const auto is_used = hn::FirstN(d, size_ > first ? size_ - first : 0);
+      hn::StoreU(places[k], d, places_.data() + first);
+      paired += hn::CountTrue(d, hn::And(is_used, hn::Ne(places[k], hn::Zero(d))));
+      repeated = hn::Or(repeated, hn::And(is_used, hn::Gt(places[k], hn::Set(d, 2 * kOnce - 1))));
     }
-    return count - repeats;
+    is_repeated_ = is_repeated_ || !hn::AllFalse(d, repeated);
+    return paired;
   }
 
-  std::size_t arrows_ = 0, single_count_ = 0, tetrahedra_ = 0;
-  alignas(64) std::array<std::uint32_t, 2 * (kMostArrows + kPadding)> ends_{};  ///< start and end of each edge
-  std::array<Index, kMostArrows + kPadding> tetrahedra_of_{};                   ///< by edge
-  std::array<std::uint8_t, kMostArrows + kPadding> omitted_{};
-  alignas(64) std::array<std::uint64_t, kMostArrows + kPadding> places_{};  ///< by edge: the place of its reverse
-  std::array<std::uint32_t, kMostTetrahedra + 1> singles_{};                ///< vertices without an edge
-  alignas(64) std::array<std::uint32_t, 2 * kMostArrows + kMostTetrahedra + kPadding> starts_{};
-};
+  [[nodiscard]] bool ends_at(std::size_t i, Index v) const { return reverse_start(i) == (kIsWide ? v : 0); }
+  [[nodiscard]] Index reverse_start(std::size_t i) const { return static_cast<Vertex>(reverse_of(keys_[i])); }
 
-constexpr std::size_t kAhead = 2;  ///< stars
+  /// Lists the edges without a reverse, except those to v. False if one of them occurs twice.
+  bool list_open(Index v) {
+    open_ = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (places_[i] != 0 || ends_at(i, v)) continue;
+      for (std::size_t k = 0; k < open_; ++k)
+        if (keys_[open_edges_[k]] == keys_[i]) return false;
+      open_edges_[open_++] = static_cast<std::uint8_t>(i);
+    }
+    return true;
+  }
+
+  /// Without a branch that depends on the edges.
+  HWY_INLINE void write_across(Index* across) const {
+    Index nowhere = 0;  // in place of the entry of an edge to v
+    const auto entry_of = [&](std::size_t i) { return across + (std::size_t{tetrahedra_of_[i]} * 4 + omitted_[i]); };
+    for (std::size_t i = 0; i < size_; ++i) {
+      Index* const entry = places_[i] != 0 ? entry_of(i) : &nowhere;
+      *entry = tetrahedra_of_[places_[i] % kOnce];
+    }
+    for (std::size_t k = 0; k < open_; ++k) *entry_of(open_edges_[k]) = kNoSimplex;
+  }
+
+  /// The number of different starts, which are added to `more`.
+  HWY_INLINE std::size_t count_starts(Index v, ClosedStars* more) {
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < size_; j += kAtOnce) {
+      std::uint64_t first = size_ > j + kVertices ? first_starts<2>(j) : first_starts<1>(j);
+      count += static_cast<std::size_t>(std::popcount(first));
+      if (more == nullptr) continue;
+      if (more->edges.size() < more->edge_count + 64) more->edges.resize(2 * more->edges.size() + 1024);
+      Index* to = more->edges.data() + more->edge_count;
+      for (; first != 0; first &= first - 1)
+        *to++ = static_cast<Vertex>(keys_[j + static_cast<std::size_t>(std::countr_zero(first))]) + (kIsWide ? 0 : v);
+      more->edge_count = static_cast<std::size_t>(to - more->edges.data());
+    }
+    return count;
+  }
+  /// The starts in kVectors vectors, from number j, that do not occur before.
+  template <std::size_t kVectors>
+  HWY_INLINE std::uint64_t first_starts(std::size_t j) const {
+    const Keys d_keys;
+    const Vertices d;
+    const hn::Half<Vertices> d_half;
+    hn::Vec<Vertices> starts[kVectors];
+    for (std::size_t k = 0; k < kVectors; ++k) {
+      const Key* const from = keys_.data() + j + k * kVertices;
+      starts[k] = hn::Combine(d, hn::TruncateTo(d_half, hn::LoadU(d_keys, from + kKeys)),
+                              hn::TruncateTo(d_half, hn::LoadU(d_keys, from)));
+    }
+    const auto equal_to = [&](std::size_t i) {
+      std::uint64_t word = 0;
+      const auto start = hn::Set(d, static_cast<Vertex>(keys_[i]));
+      for (std::size_t k = 0; k < kVectors; ++k) word |= word_of(d, hn::Eq(starts[k], start)) << (k * kVertices);
+      return word;
+    };
+    std::uint64_t before = 0, first = 0;
+    for (std::size_t i = 0; i < j; ++i) before |= equal_to(i);
+    for (std::size_t i = j; i < size_; ++i) {
+      const std::uint64_t equal = equal_to(i);
+      first |= equal & (~equal + 1);
+    }
+    const std::size_t used = std::min(size_ - j, kVectors * kVertices);
+    return first & ~before & (~std::uint64_t{0} >> (64 - used));
+  }
+
+  std::size_t size_ = 0, singles_ = 0, tetrahedra_ = 0, open_ = 0;
+  bool is_repeated_ = false;
+  // By edge, with room for whole registers:
+  alignas(64) std::array<Key, 2 * kMostArrows + kAtOnce> keys_{};
+  alignas(64) std::array<Key, kMostArrows + kAtOnce> places_{};  ///< of its reverse
+  std::array<Index, kMostArrows + 4> tetrahedra_of_{};
+  std::array<std::uint8_t, kMostArrows + 4> omitted_{};
+  std::array<std::uint8_t, kMostArrows> open_edges_{};
+};
 
 void count_stars(const Index* rows, const Stars& stars, std::size_t from, bool with_edges, std::span<ClosedStar> found,
                  ClosedStars* more) {
-  Counter counter;
+  LinkEdges<std::uint32_t> narrow;
+  LinkEdges<std::uint64_t> wide;
+  bool is_wide = false;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    // rows that are needed soon; most are in the third level of cache
-    if (i + kAhead < found.size())
-      for (const Index s : stars.of(from + i + kAhead)) __builtin_prefetch(rows + std::size_t{s} * 4);
-    found[i] = counter.count(rows, static_cast<Index>(from + i), stars.of(from + i), with_edges, more);
+    found[i] = {};
+    const auto v = static_cast<Index>(from + i);
+    const std::span<const Index> star = stars.of(v);
+    if (star.size() > kMostInStar) continue;
+    is_wide = is_wide || !narrow.load(rows, v, star, more != nullptr);
+    if (is_wide) wide.load(rows, v, star, more != nullptr);
+    found[i] = is_wide ? wide.count(v, with_edges, more) : narrow.count(v, with_edges, more);
   }
 }
 

@@ -34,7 +34,9 @@ struct ClosedStars {
   /// By tetrahedron, its row of the tetrahedra across its triangles: entry i is across the triangle opposite to vertex
   /// i. Entries are written for the triangles that are counted.
   Index* across = nullptr;
-  std::vector<Index> edges;  ///< the other ends of the edges that are counted, if any are, star after star
+  /// The other ends of the edges that are counted, if any are, star after star: the first `edge_count` of them.
+  std::vector<Index> edges;
+  std::size_t edge_count = 0;
 };
 
 /// The stars of the vertices from, from + 1, … `rows`: #S x 4, row = tetrahedron. `more`: null or what to add to.

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@
 
 #include "base/atomic_minimum.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/nearest_item.hpp"
+#include "base/periods.hpp"
 #include "base/workers.hpp"
 #include "mesh/contour_part.hpp"
 #include "mesh/incidence_data.hpp"
@@ -296,6 +300,31 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> select_components(const Cont
 }
 
 template <int N, Coordinate Real>
+requires DimensionBetween<N, 2, 5> NearestComponent
+nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels,
+                  const std::type_identity_t<std::array<double, N>>& point,
+                  const std::type_identity_t<std::array<double, N>>& steps, const WorkOptions& work) {
+  for (int a = 0; a < N; ++a)
+    if (!std::isfinite(point[a]) || !(steps[a] > 0.0) || std::isinf(steps[a]))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("the component nearest to ({}), with steps of {}; expected finite coordinates, and steps "
+                              "above 0",
+                              fmt::join(point, ", "), fmt::join(steps, ", ")));
+  require_labels(rows_of(contour), labels, {work.threads, detail::part_of(work.progress, 0.0, 0.5)});
+  const Progress searching = detail::part_of(work.progress, 0.5, 1.0);
+  const detail::NearestItem nearest = detail::nearest_item(contour.vertices.size(), searching, [&](std::size_t v) {
+    if (labels.vertices[v] == kNoComponent) return std::numeric_limits<double>::infinity();
+    std::array<double, N> here = detail::widened_point<N>(contour.vertices[v]);
+    detail::move_near<N>(contour.periods, point, here);
+    double square = 0;
+    for (int a = 0; a < N; ++a) square += (here[a] - point[a]) / steps[a] * ((here[a] - point[a]) / steps[a]);
+    return square;
+  });
+  if (nearest.item == detail::NearestItem::kNone) return {};
+  return {labels.vertices[nearest.item], std::sqrt(nearest.square)};
+}
+
+template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5> Contour<N, Real> add_component_attribute(Contour<N, Real> contour,
                                                                             const ComponentLabels& labels) {
   require_labels(rows_of(contour), labels);
@@ -314,6 +343,9 @@ requires DimensionBetween<N, 2, 5> Contour<N, Real> add_component_attribute(Cont
                                                           const WorkOptions&);                                        \
   template Contour<N, Real> select_components(const Contour<N, Real>&, const ComponentLabels&,                        \
                                               const std::vector<bool>&, const WorkOptions&);                          \
+  template NearestComponent nearest_component(const Contour<N, Real>&, const ComponentLabels&,                        \
+                                              const std::array<double, N>&, const std::array<double, N>&,             \
+                                              const WorkOptions&);                                                    \
   template Contour<N, Real> add_component_attribute(Contour<N, Real>, const ComponentLabels&);
 #include "base/instantiate.hpp"
 

@@ -149,11 +149,20 @@ IncidenceData<N> make_incidence(std::span<const Index> rows, std::size_t vertex_
     if (is_collapsed<N>(rows.data() + s * N)) data.across[s] = nothing;
   });
   std::vector<std::vector<IrregularFaces>> irregular(block_count(vertex_count, kBlock));
+  struct Scratch {
+    AnyStar<N> any;
+    ClosedStars found;
+    std::vector<ClosedStar> closed;
+  };
   for_each_block(
-      vertex_count, kBlock, threads, part_of(progress, 0.3, 1.0), [&] { return AnyStar<N>(rows, vertex_count); },
-      [&](std::size_t block, std::size_t from, std::size_t to, AnyStar<N>& any) {
-        std::vector<ClosedStar> closed(to - from);
-        ClosedStars found{count == 0 ? nullptr : data.across.data()->data(), {}};
+      vertex_count, kBlock, threads, part_of(progress, 0.3, 1.0),
+      [&] {
+        return Scratch{AnyStar<N>(rows, vertex_count), {count == 0 ? nullptr : data.across.data()->data(), {}, 0}, {}};
+      },
+      [&](std::size_t block, std::size_t from, std::size_t to, Scratch& scratch) {
+        auto& [any, found, closed] = scratch;
+        closed.assign(to - from, {});
+        found.edge_count = 0;
         if constexpr (N == 4) count_closed_stars(rows.data(), data.stars, from, with_edges, closed, &found);
         std::size_t edge = 0;  // in `found`
         for (std::size_t i = from; i < to; ++i) {

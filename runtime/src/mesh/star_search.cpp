@@ -13,6 +13,7 @@
 #define HWY_TARGET_INCLUDE "mesh/star_search.cpp"
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
+#include "base/star_neighbours.hpp"
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -81,11 +82,40 @@ HWY_INLINE bool is_found(const Index* rows, const IncidenceData<4>& incidence, I
          are_connected(beside.data(), count, reached & (~std::uint64_t{0} >> (64 - count)));
 }
 
+static_assert(kReadable <= Stars::kPadding);
+
+/// Whether the link is a sphere. False if there is doubt, as if two tetrahedra have numbers with equal lower bits.
+HWY_INLINE bool is_surely_sphere(const IncidenceData<4>& incidence, std::size_t v) {
+  const std::span<const Index> star = incidence.stars.of(v);
+  if (2 * (incidence.edges_of(static_cast<Index>(v)) - 2) != star.size()) return false;
+  std::array<std::uint64_t, kMostInStar> beside;
+  std::uint64_t reached = 1;
+  const auto reach = [&](std::uint64_t group) { reached = (reached & group) != 0 ? reached | group : reached; };
+  const bool is_closed =
+      visit_neighbours({incidence.across.data(), nullptr}, static_cast<Index>(v), star.data(), star.size(),
+                       [&](std::size_t i, Index, std::uint64_t first, std::uint64_t second) {
+                         beside[i] = first | second | std::uint64_t{1} << i;
+                         reach(beside[i]);
+                       });
+  if (!is_closed) return false;
+  const std::uint64_t all = ~std::uint64_t{0} >> (64 - star.size());
+  for (std::uint64_t before = 0; reached != all && reached != before;) {
+    before = reached;
+    for (std::size_t i = star.size(); i-- > 0;) reach(beside[i]);
+    if (reached == all) break;
+    for (std::size_t i = 0; i < star.size(); ++i) reach(beside[i]);
+  }
+  return reached == all;
+}
+
 void search_stars(const Index* rows, const IncidenceData<4>& incidence, std::size_t from,
                   std::span<std::uint8_t> found) {
   for (std::size_t i = 0; i < found.size(); ++i) {
     const std::size_t size = incidence.stars.of(from + i).size();
-    found[i] = size > 0 && size <= 64 && is_found(rows, incidence, static_cast<Index>(from + i)) ? 1 : 0;
+    const bool is_small = size > 0 && size <= kMostInStar;
+    const bool is_good =
+        is_small && (is_surely_sphere(incidence, from + i) || is_found(rows, incidence, static_cast<Index>(from + i)));
+    found[i] = is_good ? 1 : 0;
   }
 }
 

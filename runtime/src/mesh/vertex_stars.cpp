@@ -58,7 +58,8 @@ Stars make_stars(std::span<const Index> rows, std::size_t vertex_count, unsigned
   in_threads(part_of(progress, 0.0, 0.4), [&](Index v, Index) { ++stars.first[v + std::size_t{2}]; });
   // prefix sum
   std::partial_sum(stars.first.begin(), stars.first.end(), stars.first.begin());
-  stars.members.resize(stars.first.back());
+  stars.members.resize(stars.first.back() + Stars::kPadding);
+  std::fill(stars.members.end() - Stars::kPadding, stars.members.end(), Index{0});
   // write
   in_threads(part_of(progress, 0.4, 1.0),
              [&](Index v, Index s) { stars.members[stars.first[v + std::size_t{1}]++] = s; });

@@ -22,8 +22,10 @@ bool is_collapsed(const Index* row) noexcept {
 }
 
 /// The simplices around each vertex: members[first[v] … first[v + 1]), ascending. Simplices that repeat a vertex are
-/// omitted.
+/// omitted. kPadding members, 0, follow the last star, so that whole registers of members can be loaded.
 struct Stars {
+  static constexpr std::size_t kPadding = 128;
+
   std::vector<std::size_t> first;  ///< #V + 1
   Buffer<Index> members;
 

@@ -134,7 +134,7 @@ class LongerLayers {
     const auto at = [&](std::size_t i) { return from[static_cast<std::ptrdiff_t>(i) * step]; };
     for (std::size_t i = 0; i < before; ++i) to[i] = at(size - before + i);
     if (step == 1) {
-      request_ahead(from, size);
+      request_next_page(from, size);
       std::copy_n(from, size, to + before);
     } else
       for (std::size_t i = 0; i < size; ++i) to[before + i] = at(i);
@@ -144,7 +144,7 @@ class LongerLayers {
   /// Requests the samples 4 KiB behind those of a row: processors fetch ahead by themselves, but not across the end of
   /// a page, and rows of a layer mostly follow one another in memory. The address may be past the end of the image.
   template <class T>
-  static void request_ahead(const T* from, std::size_t size) noexcept {
+  static void request_next_page(const T* from, std::size_t size) noexcept {
     constexpr std::size_t kLine = 64, kPage = 4096;
     const auto address = reinterpret_cast<std::uintptr_t>(from) + kPage;
     for (std::size_t byte = 0; byte < size * sizeof(T); byte += kLine)

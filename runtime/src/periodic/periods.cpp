@@ -42,7 +42,7 @@ void check_period(const Axis& axis, int a, double period) {
 
 bool is_longitude(const Axis& axis) {
   constexpr double kTolerance = 1e-3;  // of a step: coordinates in files may be of single precision
-  if (axis.size() < 3 || !detail::is_longitude_unit(axis.unit)) return false;
+  if (axis.size() < 3 || !is_longitude_unit(axis.unit)) return false;
   const double step = (axis[axis.size() - 1] - axis[0]) / static_cast<double>(axis.size() - 1);
   for (std::size_t i = 1; i < axis.size(); ++i)
     if (std::abs(axis[i] - axis[i - 1] - step) > kTolerance * std::abs(step)) return false;
@@ -74,17 +74,17 @@ requires DimensionBetween<N, 2, 5> AxisPeriods<N> longitude_periods(const Grid<N
   return periods;
 }
 
+bool is_longitude_unit(std::string_view unit) noexcept {
+  constexpr std::array<std::string_view, 6> kUnits = {"degrees_east", "degree_east", "degree_E",
+                                                      "degrees_E",    "degreeE",     "degreesE"};
+  return std::find(kUnits.begin(), kUnits.end(), unit) != kUnits.end();
+}
+
 namespace detail {
 
 std::string label_of_axis(const Axis& axis, int number) {
   const std::string name = axis.name.empty() ? std::string(1, "xyztu"[number]) : axis.name;
   return fmt::format("axis {} ({})", number, name);
-}
-
-bool is_longitude_unit(std::string_view unit) noexcept {
-  constexpr std::array<std::string_view, 6> kUnits = {"degrees_east", "degree_east", "degree_E",
-                                                      "degrees_E",    "degreeE",     "degreesE"};
-  return std::find(kUnits.begin(), kUnits.end(), unit) != kUnits.end();
 }
 
 template <int N>

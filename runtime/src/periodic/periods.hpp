@@ -4,15 +4,11 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tegl/periodic.hpp"
 
 namespace tegl::detail {
-
-/// Whether a unit is that of longitudes: degrees_east and its other spellings.
-[[nodiscard]] bool is_longitude_unit(std::string_view unit) noexcept;
 
 /// An axis in messages, such as "axis 0 (lon)"; one without a name is x, y, z or t.
 [[nodiscard]] std::string label_of_axis(const Axis& axis, int number);

@@ -44,7 +44,7 @@ class PartSeparator {
     gather_simplices(candidates);
     Stars stars = make_stars<N>(flat_rows(std::span<const std::array<Index, N>>(rows_)), vertex_count(), 1);
     const std::vector<Index> bad = with_bad_links(stars, candidates);
-    for (Index& member : stars.members) member = numbers_[member];
+    for (Index& member : std::span(stars.members).first(stars.first.back())) member = numbers_[member];
     std::vector<Index> next;
     for (const Index v : bad) separate_fans(v, stars.of(v), next);
     if (!next.empty()) {

@@ -5,6 +5,9 @@
 // bit by bit.
 #include "tile/edge_means.hpp"
 
+#include <type_traits>
+#include <utility>
+
 #include "tile/extract_tables.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -31,18 +34,24 @@ HWY_INLINE void means_of_edges(const EdgeMeans<K>& means, typename EdgeMeans<K>:
     for (auto& sum : sums) sum = hn::Zero(d);
     auto total = hn::Zero(d);
     const auto of_lanes = hn::Load(bits, edges.data() + i);
-    for (unsigned e = 0; e < kEdges; ++e) {
-      const auto has = hn::RebindMask(d, hn::TestBit(of_lanes, hn::Set(bits, std::uint64_t{1} << e)));
-      const auto weight = hn::IfThenElseZero(has, hn::Set(d, kUnevenWeights[(1u << K) + e]));
-      const auto alpha = hn::IfThenElseZero(has, hn::Load(d, means.alphas[e].data() + i));
-      for (unsigned a = 0; a < K; ++a) {
-        if (a == e >> (K - 1))
-          sums[a] = hn::Add(sums[a], hn::Mul(weight, alpha));
-        else if (kEdgeBases<K>[e][a] != 0)
-          sums[a] = hn::Add(sums[a], weight);
+    // Unrolled, so that the compiler knows the axes along which each edge is at 1.
+    const auto add = [&]<unsigned E>(std::integral_constant<unsigned, E>) HWY_ATTR {
+      const auto has = hn::RebindMask(d, hn::TestBit(of_lanes, hn::Set(bits, std::uint64_t{1} << E)));
+      const auto weight = hn::IfThenElseZero(has, hn::Set(d, kUnevenWeights[(1u << K) + E]));
+      const auto alpha = hn::IfThenElseZero(has, hn::Load(d, means.alphas[E].data() + i));
+      [&]<unsigned... A>(std::integer_sequence<unsigned, A...>) HWY_ATTR {
+        ((sums[A] = A == E >> (K - 1)          ? hn::Add(sums[A], hn::Mul(weight, alpha))
+                    : kEdgeBases<K>[E][A] != 0 ? hn::Add(sums[A], weight)
+                                               : sums[A]),
+         ...);
       }
+      (std::make_integer_sequence<unsigned, K>());
       total = hn::Add(total, weight);
+    };
+    [&]<unsigned... E>(std::integer_sequence<unsigned, E...>) HWY_ATTR {
+      (add(std::integral_constant<unsigned, E>{}), ...);
     }
+    (std::make_integer_sequence<unsigned, kEdges>());
     for (unsigned a = 0; a < K; ++a) {
       const auto mean = hn::Mul(hn::Set(d, 0.9), hn::Div(sums[a], total));
       hn::StoreU(hn::Add(hn::Set(d, own_coordinate(0.0, static_cast<int>(a), true)), mean), d, out[a].data() + i);

@@ -204,43 +204,31 @@ class SweptComplex {
   }
 
   void find_passages(unsigned threads, const Progress& progress) {
-    struct Scratch {
-      LinkSides<N> sides;
-      std::optional<SidesAcross> across;
-    };
     passages_.resize(contour_.vertex_count());
     for_each_block(
         contour_.vertex_count(), kBlock, threads, progress,
-        [&] {
-          Scratch scratch{LinkSides<N>(simplices_, contour_.vertex_count()), {}};
-          if constexpr (N == 4) scratch.across.emplace(simplices_, across_);
-          return scratch;
-        },
-        [&](std::size_t, std::size_t from, std::size_t to, Scratch& scratch) {
+        [&] { return LinkSides<N>(simplices_, contour_.vertex_count()); },
+        [&](std::size_t, std::size_t from, std::size_t to, LinkSides<N>& links) {
+          std::vector<StarSides> sides(N == 4 ? to - from : 0);
+          if constexpr (N == 4)
+            find_sides({simplices_.data(), across_.data(), incidence_->stars}, from,
+                       std::span<const Index>(rank_).subspan(from, to - from), sides);
           for (std::size_t i = from; i < to; ++i) {  // in the order of the contour: stars are near each other
             const Index v = rank_[i];
             passages_[v] = {};
-            if (N == 4 && i + kAhead < to) prefetch(star(rank_[i + kAhead]));
-            if constexpr (N == 4)
-              if (in_border_[v] == 0)
-                if (const StarSides sides = scratch.across->visit(v, star(v)); sides.are_connected) {
-                  passages_[v] = {sides.below, simplices_[sides.below].front(), sides.growth, 0};
-                  continue;
-                }
+            if (N == 4 && sides[i - from].are_connected) {
+              const auto [below, growth, connected] = sides[i - from];
+              passages_[v] = {below, simplices_[below].front(), growth, 0};
+              continue;
+            }
             // In 5D the level set's Euler characteristic may change at the border; the sweep computes by how much.
             if (N == 5 && in_border_[v] != 0) continue;
-            if (!scratch.sides.are_connected(v, star(v))) continue;
+            if (!links.are_connected(v, star(v))) continue;
             passages_[v] = count_cells(v);
             if constexpr (N == 4)
-              if (in_border_[v] != 0)
-                passages_[v].euler = static_cast<std::int32_t>(scratch.sides.euler_change(v, star(v)));
+              if (in_border_[v] != 0) passages_[v].euler = static_cast<std::int32_t>(links.euler_change(v, star(v)));
           }
         });
-  }
-  static constexpr std::size_t kAhead = 2;  ///< stars
-  /// Fetches the rows of simplices that are needed soon; most are in the third level of cache.
-  [[gnu::always_inline]] void prefetch(std::span<const Index> star) const {
-    for (const Index s : star) prefetch(s);
   }
   [[nodiscard]] Passage count_cells(Index v) const {
     Passage passage;

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Coordinates in arrays of two dimensions that are no places, or that no convention names.
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "images/netcdf_files.hpp"
 #include "io_support.hpp"
+#include "tegl/curved.hpp"
 
 namespace tegl::test {
 namespace {
@@ -39,6 +45,13 @@ struct Plane {
   }
 };
 
+/// The coordinates of a curved axis, however they are stored.
+std::vector<double> coordinates_of(const CurvedAxis& axis) {
+  std::vector<double> coordinates(axis.size());
+  for (std::size_t i = 0; i < axis.size(); ++i) coordinates[i] = axis[i];
+  return coordinates;
+}
+
 /// A plane with x and y in hundreds of metres, turned a little.
 Plane projected() {
   Plane plane;
@@ -64,7 +77,7 @@ TEST(NetCdfCoordinates, ThatAreTooLargeAreUnknownPlaces) {
     plane.write(dir / "a.nc");
     const ReadImageResult read = read_image(dir / "a.nc");
     ASSERT_EQ(read.info.curved.size(), 2U);
-    const auto& longitudes = read.info.curved[0].values;
+    const std::vector<double> longitudes = coordinates_of(read.info.curved[0]);
     for (std::size_t k = 0; k < 12; ++k) {
       if (k == 6)
         EXPECT_TRUE(std::isnan(longitudes[k]));
@@ -97,7 +110,7 @@ TEST(NetCdfCoordinates, OfThePolesMayBeRounded) {
   plane.write(dir / "a.nc");
   const ReadImageResult read = read_image(dir / "a.nc");
   ASSERT_EQ(read.info.curved.size(), 2U);
-  EXPECT_EQ(read.info.curved[1].values, plane.second);
+  EXPECT_EQ(coordinates_of(read.info.curved[1]), plane.second);
   EXPECT_THAT(read.info.remarks, testing::IsEmpty());
   {
     NcWriter file(dir / "b.nc");
@@ -140,10 +153,10 @@ TEST(NetCdfCoordinates, OfAProjectedPlaneAreCurvedAxesIfAttributesSaySo) {
     plane.write(dir / "a.nc");
     const ReadImageResult read = read_image(dir / "a.nc");
     ASSERT_EQ(read.info.curved.size(), 2U);
-    EXPECT_EQ(read.info.curved[0].values, plane.first);
+    EXPECT_EQ(coordinates_of(read.info.curved[0]), plane.first);
     EXPECT_EQ(read.info.curved[0].unit, "m");
     EXPECT_EQ(read.info.curved[1].axis, 1);
-    EXPECT_EQ(read.info.curved[1].values, plane.second);
+    EXPECT_EQ(coordinates_of(read.info.curved[1]), plane.second);
     EXPECT_THAT(read.info.remarks, testing::IsEmpty());
   }
 }
@@ -162,6 +175,116 @@ TEST(NetCdfCoordinates, OfUnknownMeaningAreARemark) {
   plane.has_axes = true;
   plane.write(dir / "b.nc");
   EXPECT_THAT(read_image(dir / "b.nc").info.remarks, testing::IsEmpty());
+}
+
+// ---- longitudes across 180 degrees ----------------------------------------------------------------------------------
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Longitudes of 36 x 6 samples from 100 eastwards, in -180 to 180, that are unknown on land.
+struct Globe {
+  static constexpr std::size_t kColumns = 36, kRows = 6;
+  using Land = std::function<bool(std::size_t row, std::size_t column)>;
+
+  explicit Globe(const Land& is_land) {
+    for (std::size_t s = 0; s < kColumns * kRows; ++s) {
+      const bool is_unknown = is_land(s / kColumns, s % kColumns);
+      const double x = 100.0 + 10.0 * static_cast<double>(s % kColumns);
+      continued.push_back(is_unknown ? kUnknown : x);
+      stored.push_back(is_unknown ? kUnknown : x >= 180 ? x - 360 : x);
+    }
+  }
+
+  std::vector<double> stored, continued;
+};
+
+/// Expects the longitudes to differ from the right ones by the same multiple of 360 everywhere: 0 at the first one.
+void expect_continued(const std::vector<double>& longitudes, const Globe& globe, std::string_view where) {
+  ASSERT_EQ(longitudes.size(), globe.continued.size());
+  double turn = kUnknown;
+  for (std::size_t s = 0; s < longitudes.size(); ++s) {
+    ASSERT_EQ(std::isnan(longitudes[s]), std::isnan(globe.stored[s])) << where << ", sample " << s;
+    if (std::isnan(longitudes[s])) continue;
+    if (std::isnan(turn)) turn = globe.stored[s] - globe.continued[s];
+    ASSERT_EQ(longitudes[s], globe.continued[s] + turn) << where << ", sample " << s;
+  }
+}
+
+const std::vector<std::pair<std::string, Globe::Land>>& lands() {
+  static const std::vector<std::pair<std::string, Globe::Land>> all = {
+      {"none", [](auto, auto) { return false; }},
+      {"the first sample", [](auto row, auto column) { return row == 0 && column == 0; }},
+      {"the start of a row", [](auto row, auto column) { return row == 1 && column == 0; }},
+      {"the first column", [](auto, auto column) { return column == 0; }},
+      {"most of a row", [](auto row, auto column) { return row == 2 && column >= 3 && column < 28; }},
+      {"most of two rows", [](auto row, auto column) { return row / 2 == 1 && column >= 3 && column < 28; }},
+      {"the end of a row", [](auto row, auto column) { return row == 3 && column >= 30; }},
+      {"a row", [](auto row, auto) { return row == 2; }},
+      {"the first row", [](auto row, auto) { return row == 0; }},
+      {"a corner", [](auto row, auto column) { return row < 2 && column < 12 - 2 * row; }},
+      {"a band of columns", [](auto, auto column) { return column >= 20 && column < 25; }},
+      {"all but a lake and the last columns",
+       [](auto row, auto column) { return column < 20 && !(row >= 3 && column >= 8 && column < 10); }},
+      {"stairs", [](auto row, auto column) { return column > 5 * row && column < 36 - 5 * row && row % 2 == 0; }},
+      {"every second sample", [](auto row, auto column) { return (row + column) % 2 == 0; }}};
+  return all;
+}
+
+TEST(NetCdfCoordinates, LongitudesAreContinuedAroundLand) {
+  for (const auto& [where, is_land] : lands()) {
+    const Globe globe(is_land);
+    std::vector<double> longitudes = globe.stored;
+    continue_longitudes(longitudes, std::array<std::size_t, 2>{Globe::kColumns, Globe::kRows});
+    expect_continued(longitudes, globe, where);
+    const std::vector<double> once = longitudes;
+    continue_longitudes(longitudes, std::array<std::size_t, 4>{1, Globe::kColumns, 1, Globe::kRows});
+    for (std::size_t s = 0; s < once.size(); ++s)
+      ASSERT_TRUE(longitudes[s] == once[s] || std::isnan(once[s])) << where << ": a second call changes nothing";
+    // two rows of each of three layers
+    longitudes = globe.stored;
+    continue_longitudes(longitudes, std::array<std::size_t, 3>{Globe::kColumns, 2, 3});
+    expect_continued(longitudes, globe, where);
+  }
+}
+
+TEST(NetCdfCoordinates, LongitudesThatAreNoPlacesRemain) {
+  std::vector<double> longitudes = {1e20, 170, -180, -9999, std::numeric_limits<double>::infinity(), 175, -175, -170};
+  continue_longitudes(longitudes, std::array<std::size_t, 2>{4, 2});
+  EXPECT_EQ(longitudes,
+            (std::vector<double>{1e20, 170, 180, -9999, std::numeric_limits<double>::infinity(), 175, 185, 190}));
+  std::vector<double> unknown(8, kUnknown), none;
+  continue_longitudes(unknown, std::array<std::size_t, 2>{4, 2});
+  for (const double x : unknown) EXPECT_TRUE(std::isnan(x));
+  continue_longitudes(none, std::array<std::size_t, 2>{0, 2});
+  expect_error(ErrorCode::InvalidArgument, {"8 longitudes", "expected 6", "3 x 2"}, [&] {
+    continue_longitudes(longitudes, std::array<std::size_t, 2>{3, 2});
+  });
+}
+
+TEST(NetCdfCoordinates, LongitudesOfFilesAreContinuedAroundLand) {
+  const TempDir dir;
+  for (const auto& [where, is_land] : lands()) {
+    const Globe globe(is_land);
+    {
+      NcWriter file(dir / "a.nc");
+      const int y = file.dimension("row", Globe::kRows), x = file.dimension("column", Globe::kColumns);
+      const int lon = file.variable("lon", NC_DOUBLE, {y, x}), lat = file.variable("lat", NC_DOUBLE, {y, x});
+      const int v = file.variable("v", NC_FLOAT, {y, x});
+      file.text(lon, "units", "degrees_east");
+      file.text(lat, "units", "degrees_north");
+      file.text(v, "coordinates", "lon lat");
+      file.end();
+      std::vector<double> latitudes;
+      for (std::size_t s = 0; s < globe.stored.size(); ++s)
+        latitudes.push_back(std::isnan(globe.stored[s]) ? kUnknown : 10.0 * static_cast<double>(s / Globe::kColumns));
+      file.values(lon, globe.stored);
+      file.values(lat, latitudes);
+      file.values(v, counting<double>(globe.stored.size(), 0));
+    }
+    const ReadImageResult read = read_image(dir / "a.nc");
+    ASSERT_EQ(read.info.curved.size(), 2U);
+    expect_continued(coordinates_of(read.info.curved[0]), globe, where);
+  }
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "ambiguity/cube_words.hpp"
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/saddle.hpp"
+#include "only_targets.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tile/tesseract_fill.hpp"
@@ -156,17 +157,21 @@ void compare_saddles(const Kind& kind) {
 }
 
 TEST(FaceSigns, MeansAreThoseOfEachFaceByItself) {
-  for (const Kind& kind : kinds()) {
-    compare_means<3>(kind);
-    compare_means<4>(kind);
-  }
+  test::with_all_targets([] {
+    for (const Kind& kind : kinds()) {
+      compare_means<3>(kind);
+      compare_means<4>(kind);
+    }
+  });
 }
 
 TEST(FaceSigns, SaddlesAreThoseOfEachSquareByItself) {
-  for (const Kind& kind : kinds()) {
-    compare_saddles<3>(kind);
-    compare_saddles<4>(kind);
-  }
+  test::with_all_targets([] {
+    for (const Kind& kind : kinds()) {
+      compare_saddles<3>(kind);
+      compare_saddles<4>(kind);
+    }
+  });
 }
 
 /// The table entry of a cube with decided squares.
@@ -220,17 +225,19 @@ void compare_joins(const Kind& kind, const std::function<Cube(std::mt19937_64&)>
 }
 
 TEST(FaceSigns, JoinsInCubesAreThoseOfEachCubeByItself) {
-  for (const Kind& kind : kinds())
-    compare_joins(kind, [&](std::mt19937_64& random) {
-      Cube values;
-      for (double& value : values) value = kind.sample(random);
-      return values;
-    });
+  test::with_all_targets([] {
+    for (const Kind& kind : kinds())
+      compare_joins(kind, [&](std::mt19937_64& random) {
+        Cube values;
+        for (double& value : values) value = kind.sample(random);
+        return values;
+      });
+  });
 }
 
 /// The hyperdeterminant of a form a yz + b xz + c xy is 0, whatever its origin, so that only rounding decides its sign.
 TEST(FaceSigns, JoinsInCubesThatRoundingCouldDecideAreUnsure) {
-  compare_joins({"degenerate", uniform, 0.0, false}, [](std::mt19937_64& random) {
+  const auto degenerate = [](std::mt19937_64& random) {
     const double a = uniform(random), b = uniform(random), c = uniform(random);
     const std::array<double, 3> origin = {0.5 + 0.5 * uniform(random), 0.5 + 0.5 * uniform(random),
                                           0.5 + 0.5 * uniform(random)};
@@ -240,11 +247,12 @@ TEST(FaceSigns, JoinsInCubesThatRoundingCouldDecideAreUnsure) {
       values[v] = a * y * z + b * x * z + c * x * y;
     }
     return values;
-  });
+  };
+  test::with_all_targets([&] { compare_joins({"degenerate", uniform, 0.0, false}, degenerate); });
 }
 
 /// Against the parts of the contours in the cubes, for random signatures and centres of squares and cubes.
-TEST(BoundarySides, AreConnectedIfTheContourBetweenThemIs) {
+void expect_sides_connected_by_contours() {
   std::mt19937_64 random(1);
   std::size_t connected = 0, with_spheres = 0;
   ResolvedTesseract tesseract;
@@ -288,6 +296,10 @@ TEST(BoundarySides, AreConnectedIfTheContourBetweenThemIs) {
   EXPECT_GT(with_spheres, 1'000u);
 }
 
+TEST(BoundarySides, AreConnectedIfTheContourBetweenThemIs) {
+  test::with_all_targets(expect_sides_connected_by_contours);
+}
+
 /// Expects that the open cubes are those with one pair of edges, or with more: `entries` by number among the active
 /// tiles.
 void expect_open(const OpenCubes& open, bool has_one_pair, const std::vector<unsigned>& entries,
@@ -304,7 +316,7 @@ void expect_open(const OpenCubes& open, bool has_one_pair, const std::vector<uns
   EXPECT_EQ(i, open.count);
 }
 
-TEST(CubeWords, VariantsAreThoseOfEachCubeByItself) {
+void expect_variants_of_each_cube() {
   std::mt19937_64 random(6);
   std::size_t with_one = 0, with_more = 0;
   for (int round = 0; round < 12'000; ++round) {
@@ -353,6 +365,8 @@ TEST(CubeWords, VariantsAreThoseOfEachCubeByItself) {
   EXPECT_GT(with_one, 1000u);
   EXPECT_GT(with_more, 30u);
 }
+
+TEST(CubeWords, VariantsAreThoseOfEachCubeByItself) { test::with_all_targets(expect_variants_of_each_cube); }
 
 }  // namespace
 }  // namespace tegl::detail

@@ -141,6 +141,40 @@ TEST(Division, AtMissingValuesTheContourIsAManifold) {
     expect_oriented_manifold(extract(divided_complex(image.view(), division, 0.5), 0.5));
 }
 
+/// Caps touch each other in a point beside a missing sample also if no edge is crossed there.
+template <int N>
+void expect_closed_beside_missing(unsigned images) {
+  for (unsigned seed = 0; seed < images; ++seed) {
+    std::mt19937 random(N * images + seed);
+    OwnedImage<double, N> image;
+    std::size_t count = 1;
+    for (int a = 0; a < N; ++a) {
+      image.grid.axes[a] = Axis::uniform(2 + random() % (N == 4 ? 2 : 5));
+      count *= image.grid.axes[a].size();
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      image.values.push_back(random() % 8 == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                               : static_cast<double>(random() % 3));
+    for (const double isovalue : {0.0, 0.5})
+      for (const Division division : divisions<N>()) {
+        SCOPED_TRACE(testing::Message() << N << "D, seed " << seed << ", " << name_of(division) << ", " << isovalue);
+        ExtractOptions options;
+        options.close = true;
+        const auto contour = extract_divided<double>(image.view(), division, isovalue, options);
+        expect_oriented_manifold(contour);
+        const ContourSize size = count_divided(image.view(), division, isovalue, options);
+        EXPECT_EQ(size.vertices, contour.vertices.size());
+        EXPECT_EQ(size.simplices, contour.simplices.size());
+      }
+  }
+}
+
+TEST(Division, CapsBesideMissingValuesAreAManifold) {
+  expect_closed_beside_missing<2>(60);
+  expect_closed_beside_missing<3>(60);
+  expect_closed_beside_missing<4>(12);
+}
+
 TEST(Division, Of4dImagesOnlySomeExist) {
   const auto image = noise<4>(3, 1);
   expect_error(ErrorCode::InvalidArgument, "division hybrid of a 4D image; expected kuhn or symmetric",

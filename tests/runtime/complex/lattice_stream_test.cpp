@@ -89,9 +89,7 @@ void expect_streamed(Lattice lattice, const std::array<std::size_t, N>& sizes, u
     EXPECT_EQ(extracted.stats.tiles, stats.tiles);
     EXPECT_EQ(extracted.stats.active_tiles, stats.active_tiles);
     EXPECT_TRUE(std::ranges::equal(sink.vertices, contour.vertices));
-    ASSERT_EQ(sink.normals.size(), contour.normals.size());
-    for (std::size_t v = 0; v < contour.normals.size(); ++v)
-      for (int a = 0; a < N; ++a) ASSERT_NEAR(sink.normals[v][a], contour.normals[v][a], 1e-6) << v;
+    EXPECT_TRUE(std::ranges::equal(sink.normals, contour.normals));
     EXPECT_TRUE(std::ranges::equal(sink.simplices, contour.simplices, [](const auto& wide, const auto& narrow) {
       return std::equal(wide.begin(), wide.end(), narrow.begin());
     }));
@@ -152,7 +150,7 @@ void expect_streamed_by_cells(Lattice lattice, const std::array<std::size_t, N>&
       for (std::size_t v = 0; v < contour.normals.size(); ++v) normals[contour.vertices[v]] = contour.normals[v];
       ASSERT_EQ(sink.normals.size(), contour.normals.size());
       for (std::size_t v = 0; v < sink.normals.size(); ++v)
-        for (int a = 0; a < N; ++a) ASSERT_NEAR(sink.normals[v][a], normals.at(sink.vertices[v])[a], 1e-6) << v;
+        EXPECT_EQ(sink.normals[v], normals.at(sink.vertices[v])) << v;
     }
 }
 
@@ -165,6 +163,74 @@ TEST(StreamedLattice, ByCellsIsTheContourInMemory) {
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 9}, 4, {Ambiguity::high, Ambiguity::mean});
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {33, 30, 31, 4}, 5, {Ambiguity::saddle});
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 2}, 6, {Ambiguity::high});
+}
+
+template <int N>
+Contour<N, double> contour_in(const Collector<N, double>& sink, std::vector<Period<N>> periods) {
+  Contour<N, double> contour;
+  contour.vertices.assign(sink.vertices.begin(), sink.vertices.end());
+  contour.normals.assign(sink.normals.begin(), sink.normals.end());
+  for (const auto& wide : sink.simplices) {
+    auto& simplex = contour.simplices.emplace_back();
+    for (int j = 0; j < N; ++j) simplex[j] = static_cast<Index>(wide[j]);
+  }
+  contour.periods = std::move(periods);
+  return contour;
+}
+
+/// Every other layer is high, so gradients are zero away from the sides.
+template <int N>
+void expect_normals_of_zero(Lattice lattice, const std::array<std::size_t, N>& sizes, const AxisPeriods<N>& periods) {
+  SCOPED_TRACE(testing::Message() << name_of(lattice) << ", " << sizes[N - 1] << " layers");
+  const int layers = lattice == Lattice::fcc_in_time ? N - 2 : N - 1;
+  OwnedImage<double, N> image;
+  for (int a = 0; a < N; ++a)
+    image.grid.axes[a] = Axis::uniform(sizes[a], 0.7, a == layers ? 0.1 * layer_step(lattice) : 0.1);
+  image.grid.linear[0][1] = 0.3;
+  std::size_t below = 1, count = 1;
+  for (int a = 0; a < N; ++a) below *= a < layers ? sizes[a] : 1, count *= sizes[a];
+  for (std::size_t i = 0; i < count; ++i) image.values.push_back(i / below % sizes[layers] % 2 == 0 ? 0.9 : 1.03);
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  const auto contour = extract_lattice<double>(image.view(), lattice, kIsovalue, options, periods);
+  Collector<N, double> sink;
+  (void)stream_to<N>(sink, image, lattice, options, periods);
+  const auto is_inside = [&](std::array<double, N> x) {  // at both ends of its edge all neighbours exist
+    x[0] -= 0.3 * x[1];
+    for (int a = 0; a < N; ++a) {
+      const Axis& axis = image.grid.axes[a];
+      const double slack = 1e-6 * axis.step();
+      if (periods[a] == 0.0 && (x[a] < axis[2] + slack || x[a] > axis[axis.size() - 3] - slack)) return false;
+    }
+    return true;
+  };
+  const std::array<double, N> zero{};
+  const auto in_memory = contour.normals, streamed = contour_in<N>(sink, contour.periods).normals;
+  std::size_t inside = 0;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) {
+    if (!is_inside(contour.vertices[v])) continue;
+    ++inside;
+    ASSERT_EQ(in_memory[v], zero);
+  }
+  EXPECT_GT(inside, 100u);
+  // the same bytes, up to the numbers of vertices
+  const auto sorted = [](const auto& vertices, const auto& normals) {
+    std::vector<std::pair<std::array<double, N>, std::array<double, N>>> all;
+    for (std::size_t v = 0; v < vertices.size(); ++v) all.emplace_back(vertices[v], normals[v]);
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_TRUE(sorted(contour.vertices, in_memory) == sorted(sink.vertices, streamed));
+}
+
+TEST(StreamedLattice, AGradientOfZeroHasANormalOfZero) {
+  expect_normals_of_zero<2>(Lattice::triangular, {16400, 39}, {});
+  expect_normals_of_zero<3>(Lattice::fcc, {140, 120, 27}, {});
+  expect_normals_of_zero<3>(Lattice::bcc, {140, 120, 27}, {});
+  expect_normals_of_zero<4>(Lattice::d4, {9, 8, 7, 13}, {});
+  expect_normals_of_zero<4>(Lattice::fcc_in_time, {9, 8, 13, 8}, {});
+  expect_normals_of_zero<3>(Lattice::fcc, {9, 8, 12}, {0.9, 0.0, 12 * 0.1 * layer_step(Lattice::fcc)});
+  expect_normals_of_zero<4>(Lattice::d4, {9, 8, 7, 14}, {0.0, 0.8, 0.0, 14 * 0.1 * layer_step(Lattice::d4)});
 }
 
 /// What a streamed contour has that the plain one of noise does not.
@@ -187,19 +253,6 @@ std::vector<std::array<double, N>> rounded(const Buffer<std::array<double, N>>& 
   std::vector<std::array<double, N>> result;
   for (const auto& place : places) result.push_back(rounded<N>(place));
   return result;
-}
-
-template <int N>
-Contour<N, double> contour_in(const Collector<N, double>& sink, std::vector<Period<N>> periods) {
-  Contour<N, double> contour;
-  contour.vertices.assign(sink.vertices.begin(), sink.vertices.end());
-  contour.normals.assign(sink.normals.begin(), sink.normals.end());
-  for (const auto& wide : sink.simplices) {
-    auto& simplex = contour.simplices.emplace_back();
-    for (int j = 0; j < N; ++j) simplex[j] = static_cast<Index>(wide[j]);
-  }
-  contour.periods = std::move(periods);
-  return contour;
 }
 
 /// Takes away single values and whole blocks.

@@ -71,8 +71,7 @@ TEST(PointNumbers, OfAllPartsAreInTheOrderOfTheKeys) {
 
 TEST(VertexRange, HasTheLeastAndTheLargestNumberOnAllInstructionSets) {
   std::mt19937_64 bits(3);
-  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
-    const test::OnlyTargets only(left & -left);
+  test::with_all_targets([&] {
     for (std::size_t count = 1; count < 100; ++count) {
       std::vector<Index> numbers(count);
       for (Index& number : numbers) number = static_cast<Index>(bits());
@@ -81,7 +80,7 @@ TEST(VertexRange, HasTheLeastAndTheLargestNumberOnAllInstructionSets) {
       ASSERT_EQ(range.least, *least) << count;
       ASSERT_EQ(range.most, *most) << count;
     }
-  }
+  });
 }
 
 /// A row of tetrahedra over time, whose vertices are numbered in the order of time.

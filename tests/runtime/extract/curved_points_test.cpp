@@ -3,12 +3,17 @@
 // Curved grids whose coordinates are stored sample by sample: their contours are those on arrays of coordinates.
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <random>
+#include <span>
+#include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -279,6 +284,180 @@ TEST(CurvedPoints, SomeColumnsOnlyOrInAnotherOrder) {
   wrong[1].column = 3;
   expect_error(ErrorCode::InvalidGrid, "column 3 of the points for axis 1; expected a number below 3",
                [&] { (void)extract_curved(image.view(), wrong, 0.5); });
+}
+
+/// The coordinates of all axes side by side, those of axis 0 first or last, and `pitch` numbers from a sample to the
+/// next one. The memory ends behind the last coordinate.
+template <class T>
+std::vector<T> side_by_side(const std::vector<CurvedAxis>& curved, std::size_t pitch, bool descends) {
+  const std::size_t columns = curved.size(), samples = curved[0].size();
+  std::vector<T> numbers(pitch * (samples - 1) + columns, T{7});
+  for (std::size_t c = 0; c < columns; ++c)
+    for (std::size_t i = 0; i < samples; ++i)
+      numbers[pitch * i + (descends ? columns - 1 - c : c)] = static_cast<T>(curved[c].values[i]);
+  numbers.shrink_to_fit();
+  return numbers;
+}
+
+template <class T, class Real, int N>
+void expect_contours_in_place(const std::array<std::size_t, N>& sizes) {
+  const OwnedImage<double, N> image = noise<N>(sizes);
+  std::array<unsigned, N> along;
+  along.fill((1u << N) - 1);
+  const std::vector<CurvedAxis> separate = random_axes<N>(image.grid, along, std::is_same_v<T, float>);
+  const auto expected = extract_curved<Real>(image.view(), separate, 0.5, {.normals = Normals::differences});
+  for (const std::size_t pitch : {std::size_t{N}, std::size_t{4}, std::size_t{7}})
+    for (const bool descends : {false, true})
+      for (const std::size_t columns : {std::size_t{1}, std::size_t{N}}) {
+        const std::vector<T> numbers = side_by_side<T>(separate, pitch, descends);
+        std::vector<CurvedAxis> curved = separate;
+        for (std::size_t c = 0; c < N; ++c) {
+          const std::size_t column = descends ? N - 1 - c : c;
+          curved[c].values.clear();
+          curved[c].column = columns == 1 ? 0 : static_cast<unsigned>(column);
+          const T* const first = numbers.data() + (columns == 1 ? column : 0);
+          curved[c].points = CurvedPoints::in_place(first, separate[0].size(), columns, pitch);
+        }
+        EXPECT_EQ(curved, separate);
+        const auto contour = extract_curved<Real>(image.view(), curved, 0.5, {.normals = Normals::differences});
+        EXPECT_EQ(contour.vertices, expected.vertices) << pitch << " " << descends << " " << columns;
+        EXPECT_EQ(contour.normals, expected.normals);
+        EXPECT_EQ(contour.simplices, expected.simplices);
+        EXPECT_EQ(find_folds<N>(image.grid, curved), find_folds<N>(image.grid, separate));
+        const CurvedSeam<N> seam{N - 1, {}};
+        const auto closed = extract_curved<Real>(image.view(), curved, 0.5, {}, std::span(&seam, 1));
+        EXPECT_EQ(closed.vertices, extract_curved<Real>(image.view(), separate, 0.5, {}, std::span(&seam, 1)).vertices);
+      }
+}
+
+TEST(CurvedPoints, InPlaceHaveTheBytesOfArrays) {
+  expect_contours_in_place<float, float, 2>({20, 31});
+  expect_contours_in_place<double, double, 2>({20, 31});
+  expect_contours_in_place<float, float, 3>({13, 9, 10});
+  expect_contours_in_place<float, double, 3>({13, 9, 10});
+  expect_contours_in_place<double, float, 3>({13, 9, 10});
+  expect_contours_in_place<double, double, 3>({13, 9, 10});
+  expect_contours_in_place<float, float, 4>({5, 5, 4, 4});
+  expect_contours_in_place<double, double, 4>({5, 5, 4, 4});
+}
+
+TEST(CurvedPoints, InPlaceKeepTheOwnerAndRefuseBadNumbers) {
+  const auto owned = std::make_shared<std::vector<float>>(12, 1.0f);
+  {
+    const CurvedPoints points = CurvedPoints::in_place(owned->data(), 4, 3, 3, owned);
+    EXPECT_EQ(owned.use_count(), 2);
+    EXPECT_EQ(points.floats(), owned->data());
+    EXPECT_EQ(points.pitch(), 3U);
+  }
+  EXPECT_EQ(owned.use_count(), 1);
+  for (const auto& [columns, pitch] : {std::pair(0, 1), std::pair(5, 5), std::pair(3, 2)})
+    expect_error(ErrorCode::InvalidArgument,
+                 std::to_string(columns) + " coordinates, " + std::to_string(pitch) + " numbers apart",
+                 [&, columns = columns, pitch = pitch] {
+                   (void)CurvedPoints::in_place(owned->data(), 2, static_cast<std::size_t>(columns),
+                                                static_cast<std::size_t>(pitch));
+                 });
+}
+
+TEST(CurvedPoints, TwoAxesWithTheSameColumnAreErrors) {
+  const OwnedImage<double, 3> image = noise<3>({9, 8, 7});
+  auto curved = by_points(random_axes<3>(image.grid, {7, 7, 7}, false));
+  curved[2].column = 0;
+  const std::string message = "the axes 0 and 2 have the same curved coordinates, column 0 of the points; expected";
+  expect_error(ErrorCode::InvalidGrid, message, [&] { (void)extract_curved(image.view(), curved, 0.5); });
+  expect_error(ErrorCode::InvalidGrid, message, [&] { (void)find_seams(image.grid, curved, std::array{0}); });
+  // copies of the numbers are not the same memory, and flat in each cell
+  auto separate = random_axes<3>(image.grid, {7, 7, 7}, false);
+  separate[2].values = separate[0].values;
+  EXPECT_EQ(find_folds<3>(image.grid, separate).cells, 8U * 7U * 6U);
+}
+
+TEST(CurvedSeams, StraightLongitudesAreFoundIn5d) {
+  Grid<5> grid = Grid<5>::unit({3, 8, 4, 3, 3});
+  grid.axes[1] = Axis::uniform(8, -170.0, 45.0);
+  for (const char* const unit : {"degrees_east", "degreeE"}) {
+    EXPECT_TRUE(is_longitude_unit(unit));
+    grid.axes[1].unit = unit;
+    EXPECT_EQ(longitude_axes<5>(grid), std::vector<int>{1});
+  }
+  EXPECT_FALSE(is_longitude_unit("degrees_north"));
+  grid.axes[1].unit = "degrees_north";
+  EXPECT_EQ(longitude_axes<5>(grid), std::vector<int>{});
+  const std::vector<CurvedAxis> curved = {{0, 1, {0.0, 1.0, 2.0}}};
+  expect_error(ErrorCode::InvalidGrid, "a curved grid in 5D; expected 2 to 4 dimensions",
+               [&] { (void)longitude_axes<5>(grid, curved); });
+}
+
+/// The folded cells of a grid, by their corners' orientations, one by one.
+template <int N>
+GridFolds<N> folds_one_by_one(const Grid<N>& grid, const std::vector<CurvedAxis>& curved) {
+  const auto place = [&](const std::array<std::size_t, N>& index) {
+    Eigen::Matrix<double, N, 1> x;
+    for (int c = 0; c < N; ++c) x(c) = static_cast<double>(index[c]);
+    for (const CurvedAxis& one : curved) {
+      std::size_t at = 0;
+      for (std::size_t a = N; a-- > 0;)
+        if ((one.along >> a & 1u) != 0) at = at * grid.axes[a].size() + index[a];
+      x(one.axis) = one[at];
+    }
+    return x;
+  };
+  GridFolds<N> found;
+  std::size_t cells = 1;
+  for (const Axis& axis : grid.axes) cells *= axis.size() - 1;
+  for (std::size_t number = 0; number < cells; ++number) {
+    std::array<std::size_t, N> cell;
+    for (std::size_t a = 0, rest = number; a < N; rest /= grid.axes[a++].size() - 1)
+      cell[a] = rest % (grid.axes[a].size() - 1);
+    bool known = true, folded = false;
+    for (unsigned corner = 0; corner < 1u << N; ++corner) {
+      Eigen::Matrix<double, N, N> edges;
+      for (int a = 0; a < N; ++a) {
+        std::array<std::size_t, N> low = cell;
+        for (int b = 0; b < N; ++b) low[b] += b != a ? corner >> b & 1u : 0u;
+        std::array<std::size_t, N> high = low;
+        ++high[a];
+        edges.col(a) = place(high) - place(low);
+      }
+      const double determinant = edges.determinant();
+      known = known && !std::isnan(determinant);
+      folded = folded || !(determinant > 0.0);
+    }
+    if (!known || !folded) continue;
+    if (found.cells++ == 0) found.first = cell;
+  }
+  return found;
+}
+
+template <int N>
+void expect_folds(const std::array<std::size_t, N>& sizes, const std::array<unsigned, N>& along, double disorder) {
+  const Grid<N> grid = Grid<N>::unit(sizes);
+  std::mt19937 random(29);
+  std::vector<CurvedAxis> curved = random_axes<N>(grid, along, true);
+  for (CurvedAxis& one : curved)
+    for (double& x : one.values) {
+      x = std::round(x * 1e-4) + std::uniform_real_distribution<>(-disorder, disorder)(random);
+      if (random() % 53 == 0) x = std::numeric_limits<double>::quiet_NaN();
+    }
+  const GridFolds<N> expected = folds_one_by_one<N>(grid, curved);
+  for (const unsigned threads : {1u, 3u}) {
+    EXPECT_EQ(find_folds<N>(grid, curved, {threads, {}}).cells, expected.cells);
+    EXPECT_EQ(find_folds<N>(grid, curved, {threads, {}}).first, expected.first);
+    EXPECT_EQ(find_folds<N>(grid, by_points(curved), {threads, {}}), find_folds<N>(grid, curved));
+  }
+  if (disorder > 0.4) EXPECT_GT(expected.cells, 0U);
+}
+
+TEST(CurvedPoints, FoldsAreThoseOfTheCornersOneByOne) {
+  for (const double disorder : {0.0, 0.2, 0.6}) {
+    expect_folds<2>({40, 31}, {3, 3}, disorder);
+    expect_folds<2>({25, 14}, {3, 0}, disorder);
+    expect_folds<3>({21, 9, 10}, {7, 7, 7}, disorder);
+    expect_folds<3>({21, 9, 10}, {3, 3, 7}, disorder);
+    expect_folds<3>({6, 19, 10}, {5, 6, 7}, disorder);  // the second one does not differ along axis 0
+    expect_folds<4>({14, 6, 5, 4}, {15, 15, 15, 15}, disorder);
+    expect_folds<4>({6, 13, 5, 4}, {7, 7, 14, 0}, disorder);
+  }
 }
 
 TEST(CurvedPoints, UnknownCoordinatesAreErrorsOnlyAtTheContour) {

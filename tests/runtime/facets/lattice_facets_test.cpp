@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Facets of images on lattices, also with periodic axes: subdivided by the contours of `extract_lattice`, closed across
-// the seam.
+// Facets of images on lattices and of divided images, also with periodic axes: subdivided by the contours of
+// `extract_lattice` and `extract_divided`, closed across the seam.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -105,6 +105,110 @@ TEST(LatticeFacets, WithoutPeriodsAreThoseOfTheirCells) {
     EXPECT_EQ(facets.axis_units[0], "m");
     EXPECT_TRUE(facets.periods.empty());
   });
+}
+
+template <int N>
+void expect_equal(const FacetHierarchy<N, double>& one, const FacetHierarchy<N, double>& other) {
+  EXPECT_EQ(one.vertices, other.vertices);
+  EXPECT_EQ(one.normals, other.normals);
+  EXPECT_EQ(one.cells, other.cells);
+  EXPECT_EQ(one.axis_names, other.axis_names);
+  for (int k = 1; k < N; ++k) EXPECT_EQ(one.levels[k].down, other.levels[k].down);
+}
+
+TEST(LatticeFacets, OfSeveralIsovaluesAreThoseOfEach) {
+  const std::vector<double> isovalues = {0.5, 2.0, 0.8};
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  for_each_noise([&]<int N>(Lattice lattice, const OwnedImage<double, N>& image) {
+    std::size_t next = 0;
+    extract_facets_several<double>(
+        image.view(), lattice, isovalues,
+        [&](std::size_t i, FacetHierarchy<N, double> facets) {
+          ASSERT_EQ(i, next++);
+          expect_equal<N>(facets, extract_facets<double>(image.view(), lattice, isovalues[i], options));
+          EXPECT_EQ(i == 1, facets.vertices.empty());
+        },
+        options);
+    EXPECT_EQ(next, isovalues.size());
+    if constexpr (N < 4)
+      for (const Division division : {Division::kuhn, Division::hybrid}) {
+        next = 0;
+        extract_facets_several<double>(
+            image.view(), division, isovalues,
+            [&](std::size_t i, FacetHierarchy<N, double> facets) {
+              ASSERT_EQ(i, next++);
+              expect_equal<N>(facets, extract_facets<double>(image.view(), division, isovalues[i], options));
+            },
+            options);
+        EXPECT_EQ(next, isovalues.size());
+      }
+    expect_error(ErrorCode::InvalidIsovalue, "isovalue", [&] {
+      extract_facets_several<double>(image.view(), lattice, std::array{0.5, std::nan("")},
+                                     [](std::size_t, const FacetHierarchy<N, double>&) { FAIL(); });
+    });
+  });
+}
+
+/// Each simplex that the contour passes has one facet.
+template <int N>
+void expect_facets_of_division(Division division, const OwnedImage<double, N>& image, const ExtractOptions& options,
+                               const AxisPeriods<N>& periods) {
+  const auto facets = extract_facets<double>(image.view(), division, 0.5, options, periods);
+  const auto [contour, stats] = extract_divided_with_stats<double>(image.view(), division, 0.5, options, periods);
+  const FacetReport report = check(facets);
+  const MeshReport expected = check(contour);
+  EXPECT_EQ(0u, faults_of(facets));
+  EXPECT_EQ(expected.euler, report.euler);
+  EXPECT_EQ(expected.components, report.components);
+  EXPECT_EQ(expected.boundary_simplices == 0, report.border == 0);
+  EXPECT_EQ(contour.periods, facets.periods);
+  EXPECT_EQ(stats.tiles, facets.cells);
+  std::set<std::pair<std::array<double, N>, std::array<double, N>>> vertices;
+  for (std::size_t v = 0; v < contour.vertices.size(); ++v) vertices.emplace(contour.vertices[v], contour.normals[v]);
+  for (std::size_t p = 0; p < facets.vertices.size(); ++p)
+    EXPECT_TRUE(vertices.contains({facets.vertices[p], facets.normals[p]})) << p;
+  std::size_t inside = 0, corners = 0;
+  for (std::size_t f = 0; f < facets.count(N - 1); ++f) {
+    if (facets.levels[N - 1].places[f].is_cap) continue;
+    ++inside;
+    EXPECT_EQ(facets.levels[N - 1].places[f].number, 0u);
+    const std::size_t points = facets.points_of(N - 1, f).size();
+    corners += points;
+    if (division == Division::hybrid) continue;
+    // a triangle or a quadrilateral; a tetrahedron or the prism over a triangle
+    EXPECT_TRUE(points == N || points == 2 * (N - 1)) << points;
+  }
+  EXPECT_GT(corners, 20u);
+  EXPECT_EQ(inside, stats.active_tiles);
+}
+
+TEST(LatticeFacets, OfDivisionsAreOneForEachSimplex) {
+  const auto run = [&]<int N>(const std::array<std::size_t, N>& sizes) {
+    const auto image = sampled_on_lattice<N>(N == 2   ? Lattice::triangular
+                                             : N == 3 ? Lattice::fcc
+                                                      : Lattice::d4,
+                                             torus_grid<N>(sizes), noise_everywhere<N>(7));
+    for (const Division division : {Division::kuhn, Division::alternating, Division::symmetric, Division::hybrid}) {
+      if (N == 4 && (division == Division::alternating || division == Division::hybrid)) continue;
+      for (const bool close : {false, true})
+        for (const unsigned axes : {0u, 1u, (1u << N) - 1}) {
+          SCOPED_TRACE(testing::Message() << N << "D " << name_of(division) << " " << close << " " << axes);
+          ExtractOptions options;
+          options.close = close;
+          options.normals = Normals::differences;
+          expect_facets_of_division<N>(division, image, options, periodic_along<N>(axes));
+        }
+      if (N == 4) continue;
+      auto with_gaps = image;
+      for (std::size_t i = 0; i < with_gaps.values.size(); i += 13)
+        with_gaps.values[i] = std::numeric_limits<double>::quiet_NaN();
+      EXPECT_EQ(0u, faults_of(extract_facets<double>(with_gaps.view(), division, 0.5)));
+    }
+  };
+  run.template operator()<2>({8, 6});
+  run.template operator()<3>({6, 4, 8});
+  run.template operator()<4>({4, 4, 4, 4});
 }
 
 /// Facets beyond the seam are those of the samples moved around the periods.

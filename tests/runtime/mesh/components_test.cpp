@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <queue>
 
@@ -254,6 +255,65 @@ TEST(Components, SelectedAreThoseAndNoOthers) {
   EXPECT_EQ(all.vertices, contour.vertices);
   EXPECT_EQ(all.simplices, contour.simplices);
   EXPECT_TRUE(select_components(contour, labels, std::vector<bool>(labels.count, false)).vertices.empty());
+}
+
+/// Two segments along axis 1, at 0 and at 3.
+Contour<2, double> two_segments() {
+  Contour<2, double> contour;
+  contour.vertices = {{0.0, 0.0}, {0.0, 1.0}, {3.0, 0.0}, {3.0, 1.0}};
+  contour.simplices = {{0, 1}, {2, 3}};
+  return contour;
+}
+
+TEST(Components, NearestToAPointHasTheNearestVertex) {
+  Contour<2, double> contour = two_segments();
+  const ComponentLabels labels = label_components(contour);
+  EXPECT_EQ(nearest_component(contour, labels, {1.0, 0.0}).label, 0u);
+  EXPECT_EQ(nearest_component(contour, labels, {1.5, 0.0}).label, 0u);  // as near as the other one
+  EXPECT_EQ(nearest_component(contour, labels, {1.5, 0.0}).distance, 1.5);
+  EXPECT_EQ(nearest_component(contour, labels, {2.0, 0.0}).label, 1u);
+  EXPECT_EQ(nearest_component(contour, labels, {2.0, 3.0}, {1.0, 2.0}).distance, std::sqrt(2.0));
+  contour.vertices[3] = {3.0, 40.0};
+  EXPECT_EQ(nearest_component(contour, labels, {0.0, 21.0}).label, 1u);
+  EXPECT_EQ(nearest_component(contour, labels, {0.0, 21.0}, {0.1, 1.0}).label, 0u);
+  // across the seam the other one is nearer
+  contour.periods = {{{4.0, 0.0}, {0.25, 0.0}, 0.0}};
+  EXPECT_EQ(nearest_component(contour, labels, {-0.75, 0.0}).label, 1u);
+  EXPECT_EQ(nearest_component(contour, labels, {7.25, 0.0}).distance, 0.25);
+  EXPECT_EQ(nearest_component(Contour<2, double>(), ComponentLabels(), {1.0, 0.0}).label, kNoComponent);
+}
+
+TEST(Components, NearestToAPointIsThatOfAllDistances) {
+  const Contour<3, double> contour = noise_contour<3>(9, 5, false);
+  const ComponentLabels labels = label_components(contour);
+  ASSERT_GT(labels.count, 5u);
+  for (const std::array<double, 3>& point : {std::array{4.1, 4.2, 4.3}, {0.3, 7.5, 2.0}, {30.0, 1.0, -8.0}}) {
+    const auto square = [&](Index v) {
+      double sum = 0;
+      for (std::size_t a = 0; a < 3; ++a)
+        sum += (contour.vertices[v][a] - point[a]) * (contour.vertices[v][a] - point[a]);
+      return sum;
+    };
+    Index nearest = contour.simplices[0][0];
+    for (Index v = 0; v < contour.vertices.size(); ++v)
+      if (square(v) < square(nearest)) nearest = v;
+    const NearestComponent found = nearest_component(contour, labels, point);
+    EXPECT_EQ(found.label, labels.vertices[nearest]);
+    EXPECT_EQ(found.distance, std::sqrt(square(nearest)));
+  }
+}
+
+TEST(Components, NearestToAPointNamesWrongNumbers) {
+  const Contour<2, double> contour = two_segments();
+  const ComponentLabels labels = label_components(contour);
+  const double nan = std::nan("");
+  expect_error(ErrorCode::InvalidArgument, "(1, nan)", [&] { nearest_component(contour, labels, {1.0, nan}); });
+  expect_error(ErrorCode::InvalidArgument, "steps of 1, 0", [&] {
+    nearest_component(contour, labels, {1.0, 0.0}, {1.0, 0.0});
+  });
+  expect_error(ErrorCode::InvalidArgument, "labels for 0 vertices", [&] {
+    nearest_component(contour, ComponentLabels(), {1.0, 0.0});
+  });
 }
 
 TEST(Components, AttributeHasTheLabels) {

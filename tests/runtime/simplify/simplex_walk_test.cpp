@@ -145,23 +145,13 @@ TYPED_TEST(Walk, DistancesByGradientsAreUpperBounds) {
   EXPECT_GT(inside, 10);
 }
 
-/// Calls test() with each instruction set.
-template <class Test>
-void with_all_targets(const Test& test) {
-  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
-    SCOPED_TRACE(hwy::TargetName(left & -left));
-    const test::OnlyTargets only(left & -left);
-    test();
-  }
-}
-
 TYPED_TEST(Walk, DistancesOfAllCornersAreThoseOfEach) {
   constexpr int N = TypeParam::value;
   std::mt19937 random(23);
   const LooseSimplices<N> loose(100, 0.0, random);
   const SimplexCorners<N> corners(loose.simplices, loose.points);
   const SimplexGradients<N> gradients(corners, 1, {});
-  with_all_targets([&] {
+  test::with_all_targets([&] {
     for (Index s = 0; s < corners.size(); ++s) {
       // above, around, and at corners of the simplex; very far away
       for (const double size : {0.1, 2.0, 1e3, 1e30, 1e35}) {
@@ -179,7 +169,7 @@ TYPED_TEST(Walk, BallsOfAllCornersAreThoseOfEach) {
   constexpr int N = TypeParam::value;
   std::mt19937 random(29);
   int bounded = 0, failed = 0;
-  with_all_targets([&] {
+  test::with_all_targets([&] {
     for (int trial = 0; trial < 1000; ++trial) {
       CornersN<N> corners = random_simplex<N>(random, 1.0);
       if (trial % 2 == 0)  // edges of equal length

@@ -173,8 +173,7 @@ TEST(EdgeMeans, AreTheOwnVerticesOfTesseracts) {
 
 TEST(SignatureSet, FindsItsMembersInARowOnAllInstructionSets) {
   std::mt19937_64 bits(11);
-  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) {
-    const OnlyTargets only(left & -left);
+  with_all_targets([&] {
     for (std::size_t count = 0; count <= 64; ++count) {
       std::array<bool, 256> members{};
       for (bool& member : members) member = bits() % (1 + count % 3) == 0;
@@ -188,7 +187,7 @@ TEST(SignatureSet, FindsItsMembersInARowOnAllInstructionSets) {
       }
       ASSERT_EQ(detail::members_of(set, row.data(), count), expected) << count;
     }
-  }
+  });
 }
 
 }  // namespace
