@@ -156,7 +156,10 @@ class Contour(ArrayOrdered):
         return _outside.extent_around(self.vertices), "contour"
 
     def _require_places(self, axis: int, places: Sequence[float], given: Sequence) -> None:
-        """Raises a ValueError unless all places along an axis lie in that extent."""
+        """Raises a ValueError unless all places along an axis lie in that extent. A periodic axis has every place."""
+        lengths = np.abs(self.periods)
+        if np.any(lengths[:, axis] > 1e-9 * lengths.max(axis=1, initial=0.0)):
+            return
         extent, of = self._extent_around()
         _outside.require_places(extent, axis, places, given, self.vertices.dtype, self.axis_names[axis],
                                 self.axis_units[axis], of)
@@ -447,12 +450,14 @@ class Contour(ArrayOrdered):
         return _export.points_and_cells(self._core)
 
     def to_meshio(self) -> typing.Any:
-        """A meshio.Mesh with points x, y, z; the t of 4D contours is point data. Needs meshio."""
+        """A meshio.Mesh with points x, y, z; the t of 4D contours is point data. A wrapped contour is a ValueError:
+        `unroll` it. Needs meshio."""
         return _export.to_meshio(self._core)
 
     def to_vtk(self) -> typing.Any:
         """A vtkPolyData of segments or triangles, or a vtkUnstructuredGrid of tetrahedra with t as a point array, with
-        normals and attributes, points as x, y, z. Needs VTK's Python modules."""
+        normals and attributes, points as x, y, z. A wrapped contour is a ValueError: `unroll` it. Needs VTK's Python
+        modules."""
         return _export.to_vtk(self._core)
 
     def to_pyvista(self) -> typing.Any:

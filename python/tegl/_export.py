@@ -26,6 +26,13 @@ def points_and_cells(contour: _tegl.Contour) -> tuple[np.ndarray, list[tuple[str
     return contour.vertices, [(kind, contour.simplices)]
 
 
+def _refuse_periods(contour: _tegl.Contour, function: str) -> None:
+    """Cells across a seam would extend over the whole domain."""
+    if contour.periods:
+        raise ValueError(f"'{function}' cannot hold a wrapped contour, with periods; expected an unrolled contour "
+                         "(Contour.unroll)")
+
+
 def _points(contour: _tegl.Contour) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Points, #V x 3, and the remaining coordinates."""
     vertices = contour.vertices
@@ -58,6 +65,7 @@ def _of_cells(contour: _tegl.Contour) -> dict[str, np.ndarray]:
 
 
 def to_meshio(contour: _tegl.Contour):
+    _refuse_periods(contour, "to_meshio")
     meshio = _imported("meshio", "to_meshio", "meshio")
     _, cells = points_and_cells(contour)
     points, extra = _points(contour)
@@ -83,6 +91,7 @@ def _cells(contour: _tegl.Contour):
 def to_vtk(contour: _tegl.Contour):
     if not 2 <= contour.ndim <= 4:
         raise ValueError(f"cells of a {contour.ndim}D contour; expected 2 to 4 dimensions")
+    _refuse_periods(contour, "to_vtk")
     core, support, cells = _cells(contour)
     coordinates, extra = _points(contour)
     points = _vtk_points(support, coordinates)

@@ -247,7 +247,10 @@ class Mesh:
 
     def __repr__(self) -> str:
         """One line: sizes, times, values."""
-        cells = ", ".join(f"{len(array)} {name}" for name, array in self.cells) or "no cells"
+        counts: dict[str, int] = {}
+        for name, array in self.cells:  # one entry for each run of cells of one type
+            counts[name] = counts.get(name, 0) + len(array)
+        cells = ", ".join(f"{count} {name}" for name, count in counts.items()) or "no cells"
         times = f", {len(self.times)} times from {self.times[0]:g} to {self.times[-1]:g}" if len(self.times) else ""
         return f"<tegl.Mesh {self.variable!r}: {self.points.shape[-2]} points, {cells}{times}>"
 
@@ -362,10 +365,11 @@ def _parts_of(mesh, values) -> tuple[typing.Any, list, typing.Any]:
     if values is None or isinstance(values, str):
         data = mesh.point_data
         if values is None and len(data) != 1:
-            raise ValueError(f"the mesh has the arrays {', '.join(map(repr, data)) or 'none'}; expected the name of one as "
-                             "values")
+            listed = f"the arrays {', '.join(map(repr, data))}" if data else "no arrays"
+            raise ValueError(f"the mesh has {listed}; expected the name of one as values")
         if values is not None and values not in data:
-            raise ValueError(f"values are {values!r}; expected one of {', '.join(map(repr, data)) or 'none'}")
+            raise ValueError(f"values are {values!r}; expected one of {', '.join(map(repr, data))}" if data else
+                             f"values are {values!r}, and the mesh has no arrays; expected the name of one")
         values = data[next(iter(data)) if values is None else values]
     return points, cells, values
 

@@ -332,6 +332,15 @@ def test_periodic_axes_give_a_wrapped_contour(tmp_path):
         assert other.measure().size == pytest.approx(contour.measure().size)
     with pytest.raises(ValueError, match="cannot hold a wrapped contour"):
         contour.save(tmp_path / "gyroid.ply")
+    for convert in (contour.to_vtk, contour.to_pyvista, contour.to_meshio):
+        try:
+            convert()
+        except ImportError:  # pyvista need not be there
+            assert convert == contour.to_pyvista
+        except ValueError as error:
+            assert "cannot hold a wrapped contour" in str(error) and "Contour.unroll" in str(error)
+        else:
+            pytest.fail("a wrapped contour was converted")
     with pytest.raises(ValueError, match="expected an unrolled one"):
         contour.simplify(0.5)
 

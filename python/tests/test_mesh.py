@@ -315,6 +315,23 @@ def test_meshes_are_read_from_files(tmp_path):
     assert contour.axis_names == ("x", "y", "z")
 
 
+def test_the_repr_of_a_mesh_counts_its_types_of_cells(tmp_path):
+    corners, ends, types = [], [], []
+    for i in range(40):  # a row of squares, every second one divided into two triangles
+        square = [i, i + 1, i + 42, i + 41]
+        for cell in [square] if i % 2 == 0 else [square[:3], [square[0], *square[2:]]]:
+            corners += cell
+            ends.append(len(corners))
+            types.append(9 if len(cell) == 4 else 5)
+    places = [f"{i} {j} 0" for j in range(2) for i in range(41)]
+    path = tmp_path / "mixed.vtu"
+    path.write_text(VTU.format(points=82, cells=60, places=" ".join(places), corners=" ".join(map(str, corners)),
+                               ends=" ".join(map(str, ends)), types=" ".join(map(str, types)), values=" ".join(["0"] * 82)))
+    mesh = tegl.read_mesh(path)
+    assert len(mesh.cells) == 40
+    assert repr(mesh) == "<tegl.Mesh 'f': 82 points, 20 quad, 40 triangle>"
+
+
 def test_files_over_time_are_one_mesh(tmp_path):
     points, cells = grid(9)
     files = [write_vtu(tmp_path / f"{k}.vtu", points * (1 + 0.1 * k), cells, ball(points) - 0.1 * k) for k in range(3)]

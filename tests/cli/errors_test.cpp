@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include <iterator>
 
 #include "sample_files.hpp"
+#include "tegl/delaunay.hpp"
 #include "tegl/io.hpp"
 #include "tegl_program.hpp"
 
@@ -99,6 +101,45 @@ TEST_F(Errors, WrongUsageExitsWith2) {
   expect_failure(2, {"slice", ball_file(), "--iso", "0", "-o", out}, {"--at"});
   expect_failure(2, {"check", ball_file(), "--require", "round"}, {"round", "closed"});
   EXPECT_EQ(run_tegl({"contour", ball_file(), "--iso", "0", "-o", out, "--json", "--quiet"}).exit, 2);
+}
+
+TEST_F(Errors, MemoryThatRunsOutInATriangulationIsReportedAsSuch) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers need address space";
+#endif
+  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
+  std::string rows = "x,y,z,v\n";
+  std::uint32_t state = 1;
+  const auto next = [&] { return (state = state * 1664525U + 1013904223U) >> 8U; };
+  for (int i = 0; i < 300000; ++i) {
+    const auto x = next(), y = next(), z = next();
+    rows += std::to_string(x) + "," + std::to_string(y) + "," + std::to_string(z) + "," + std::to_string(i) + "\n";
+  }
+  const std::string table = write("points.csv", rows);
+  const std::string command = "ulimit -v 400000; exec " TEGL_PROGRAM " contour " + table + " --iso 1000.5 -q -o " +
+                              path("out.ply") + " 2> " + path("said");
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 70);
+  std::ifstream said(path("said"));
+  EXPECT_THAT(std::string(std::istreambuf_iterator<char>(said), {}), HasSubstr("points.csv: out of memory"));
+}
+
+TEST_F(Errors, ListsHaveNoEmptyWords) {
+  const std::string out = path("out.vtkhdf");
+  for (const std::string list : {",", "x,", ",x", "x,,y", ""})
+    expect_failure(2, {"contour", ball_file(), "--iso", "0", "--periodic", list, "-o", out},
+                   {"--periodic: '" + list + "'", "none of them empty"});
+  for (const std::string list : {",", "2,", "2,,1"})
+    expect_failure(2, {"index", ball_file(), "--method", "seed-set", "--scan-order", list, "-o", out},
+                   {"--scan-order: '" + list + "'", "none of them empty"});
+  expect_failure(2, {"check", ball_file(), "--require", "closed,"}, {"--require: 'closed,'", "none of them empty"});
+  for (const std::string list : {",", "0,", "0,,1"})
+    expect_failure(2, {"contour", ball_file(), "--iso", list, "-o", out}, {"--iso is ''", "expected a number"});
+  // lists that are given twice are joined
+  for (const char* const option : {"--periodic=x,y", "--periodic=y"})
+    expect_failure(2, {"contour", ball_file(), "--iso", "0", "--periodic", "x", option, "--periodic=none", "-o", out},
+                   {"--periodic x,", "expected none without other axes"});
+  expect_failure(2, {"contour", ball_file(), "--iso", "0", "--periodic", "x=-1", "-o", out},
+                 {"--periodic x=-1; expected a positive period"});
 }
 
 TEST_F(Errors, OptionsOfImagesAreRefusedWithMeshes) {

@@ -38,6 +38,32 @@ class Slice : public ProgramTest {
   std::string file_;
 };
 
+TEST_F(Slice, AMeshInAPlaneHasTheNamesOfItsAxes) {
+  std::vector<std::string> steps;
+  for (const std::string value : {"1", "2"}) {
+    const auto array = [](const std::string& type, const std::string& name, const std::string& numbers) {
+      return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\">" + numbers + "</DataArray>";
+    };
+    steps.push_back(write(
+        "plane_" + value + ".vtu",
+        "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><Points>"
+        "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">-1 7 -1 1 7 -1 1 7 1 -1 7 1"
+        "</DataArray></Points><Cells>" +
+            array("Int32", "connectivity", "0 1 2 3") + array("Int32", "offsets", "4") + array("UInt8", "types", "9") +
+            "</Cells><PointData>" + array("Float32", "f", "0 " + value + " " + value + " 0") +
+            "</PointData></Piece></UnstructuredGrid></VTKFile>"));
+  }
+  const auto slice = [&](const std::string& at) {
+    return run_tegl({"slice", steps[0], steps[1], "--iso", "0.5", "--at", at, "-o", path("cut.ply")});
+  };
+  EXPECT_THAT(slice("z=0").out, HasSubstr("Cut at z = 0"));
+  for (const char* const at : {"y=0", "y=7"}) {
+    const RunResult run = slice(at);
+    EXPECT_EQ(run.exit, 2);
+    EXPECT_THAT(run.err, HasSubstr(std::string("--at ") + at + " names no axis; expected one of x, z, t"));
+  }
+}
+
 TEST_F(Slice, OfMovingBallsIsTwoSpheresThenOne) {
   const RunResult early = run_tegl({"slice", file(), "--iso", "0", "--at", "t=0.7", "-o", path("a.ply"), "--json"});
   ASSERT_EQ(early.exit, 0) << early.err;

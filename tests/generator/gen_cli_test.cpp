@@ -342,6 +342,8 @@ TEST(GenCli, AllResolutionsAndSamplesAreCertified) {
   const Outcome sample = gen({"--dim", "5", "--certify", "--sample", "3", "--seed", "9", "--threads", "2", "--json"});
   EXPECT_EQ(json::parse(sample.out).at("certified_tiles"), 3);
   EXPECT_EQ(json::parse(sample.out).at("seed"), 9);
+  EXPECT_EQ(gen({"--dim", "5", "--certify", "--sample", "3", "--seed", "9", "--threads", "0", "--json"}).out,
+            sample.out);
 }
 
 TEST(GenCli, RefusesSamplesThatAreNone) {
@@ -354,7 +356,7 @@ TEST(GenCli, RefusesSamplesThatAreNone) {
   expect_refused({"--dim", "5", "--certify", "--all"}, {"--dim 5", "2 to 4"});
   expect_refused({"--dim", "4", "--certify", "--seed", "5"}, {"--seed", "without --sample"});
   expect_refused({"--dim", "4", "--certify", "--threads", "2"}, {"--threads", "--all or --sample"});
-  expect_refused({"--dim", "4", "--certify", "--all", "--threads", "0"}, {"--threads 0", "from 1 to"});
+  expect_refused({"--dim", "4", "--certify", "--all", "--threads", "-1"}, {"--threads -1", "from 0 to"});
   expect_refused({"--dim", "3", "--certify", "--all", "--table-by-class"}, {"--all does not go with --table-by-class"});
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/numbers.hpp"
 #include "base/progress.hpp"
+#include "base/word_list.hpp"
 #include "input/commands.hpp"
 #include "input/contour_input.hpp"
 #include "output/output.hpp"
@@ -168,12 +169,9 @@ class CheckCommand final : public Command {
       : Command(program, "check", "Check whether a mesh is an oriented manifold, and count its faults",
                 "the mesh: .ply, .gltf, .glb, .vtkhdf, .stl or .obj") {
     add_quiet();
-    app()
-        .add_option("--require", required_,
-                    "further requirements: closed (no border), nondegenerate (no simplices of zero size)")
-        ->delimiter(',')
-        ->allow_extra_args(false)
-        ->check(CLI::IsMember({"closed", "nondegenerate"}));
+    add_word_list(app(), "--require", required_,
+                  "further requirements: closed (no border), nondegenerate (no simplices of zero size)",
+                  CLI::IsMember({"closed", "nondegenerate"}));
     intersections_.add_to(app());
     app()
         .add_option("--threads", threads_, "number of threads; 0: all processors")

@@ -148,7 +148,8 @@ class ContourCommand final : public Command {
       result.input = inputs();
       result.variable = input.info.variable;
       result.image_dim = 5;
-      result.isovalue_of_samples = require_contour(input, *result.isovalue, given_.extraction.allows_empty());
+      result.isovalue_of_samples =
+          require_contour(input, *result.isovalue, given_.extraction.allows_empty(), std::nullopt);
     }
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
@@ -212,7 +213,8 @@ class ContourCommand final : public Command {
       result.variable = input.info.variable;
       result.image_dim = image_dim(input.image);
       result.folded_cells = folded_cells;
-      result.isovalue_of_samples = require_contour(input, *result.isovalue, given_.extraction.allows_empty());
+      result.isovalue_of_samples =
+          require_contour(input, *result.isovalue, given_.extraction.allows_empty(), tiling_.lattice);
     }
     given_.attributes.keep_sizes_of(input.image);
     placed_ = given_.positions.library_options(input.image, image_options(bar.stage("positions")), position_values_);
@@ -470,6 +472,8 @@ class ContourCommand final : public Command {
     }
     const ReadImageResult input = with_option_to_4d("--facets", [&] { return read(bar.stage("read")); });
     given_.refuse_tiling_of_file(input.info, file());
+    Tiling tiling = given_.extraction.tiling();
+    given_.extraction.take_lattice(input.info, file(), tiling);
     std::vector<FacetsResult> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
       FacetsResult& result = results[i];
@@ -479,10 +483,8 @@ class ContourCommand final : public Command {
       result.image_dim = image_dim(input.image);
       result.isovalue = isovalues[i].value;
       require_output_holds_facets(result.output, result.image_dim);
-      require_contour(input, result.isovalue, given_.extraction.allows_empty());
+      require_contour(input, result.isovalue, given_.extraction.allows_empty(), tiling.lattice);
     }
-    Tiling tiling = given_.extraction.tiling();
-    given_.extraction.take_lattice(input.info, file(), tiling);
     remark(take_longitudes(input.image, given_.extraction, tiling));
     results.front().seconds.read = watch.lap();
     WrittenFiles written;

@@ -12,6 +12,7 @@
 
 #include "base/numbers.hpp"
 #include "base/progress.hpp"
+#include "base/word_list.hpp"
 #include "input/commands.hpp"
 #include "input/extraction.hpp"
 #include "output/output.hpp"
@@ -95,12 +96,11 @@ class IndexCommand final : public Command {
         .add_option("--seeds", seeds_, "with --method seed-set: method that selects the seeds (docs/seed-sets.md)")
         ->check(CLI::IsMember(seeds))
         ->capture_default_str();
-    app()
-        .add_option("--scan-order", scan_order_,
-                    "with --method seed-set: order of the axes, the axis of a scan line first, such as 2,0,1; 'cover' "
-                    "and 'volume-thinning' do not depend on it")
-        ->type_name("AXES")
-        ->delimiter(',');
+    add_word_list(app(), "--scan-order", scan_order_,
+                  "with --method seed-set: order of the axes, the axis of a scan line first, such as 2,0,1; 'cover' "
+                  "and 'volume-thinning' do not depend on it",
+                  whole_number(0))
+        ->type_name("AXES");
     app()
         .add_option("--threads", threads_, "number of threads; 0: all processors")
         ->type_name("COUNT")
@@ -155,7 +155,7 @@ class IndexCommand final : public Command {
     ActiveTilesOptions options{.work = {threads_, bar.stage("build")}};
     options.seed_method =
         *std::find_if(seeds.begin(), seeds.end(), [&](SeedMethod each) { return name_of(each) == seeds_; });
-    options.scan_order = scan_order_;
+    for (const std::string& axis : scan_order_) options.scan_order.push_back(std::stoi(axis));
     const auto write = [&](const auto& index) {
       result.tiles = index.grid().count();
       result.memory_bytes = index.memory_bytes();
@@ -171,7 +171,7 @@ class IndexCommand final : public Command {
   std::string output_;
   std::string method_{name_of(ActiveMethod::span_space)};
   std::string seeds_{name_of(SeedMethod::cover)};
-  std::vector<int> scan_order_;
+  std::vector<std::string> scan_order_;
   unsigned threads_ = 0;
 };
 

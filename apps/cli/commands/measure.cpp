@@ -19,6 +19,7 @@
 #include "input/cuts.hpp"
 #include "output/output.hpp"
 #include "tegl/io/text.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl::cli {
 
@@ -118,7 +119,11 @@ class MeasureCommand final : public ContourInputCommand {
       if (cuts.empty() && (samples_ == 0 || contour.simplices.empty())) return found;
       CutAxis extent{input.axis_name(N - 1), whole.lowest[N - 1], whole.highest[N - 1]};
       CutAxis axis = input.last_axis.value_or(extent);
-      if (crosses_period(contour, Hyperplane<N>::across(N - 1, 0.0))) {
+      const bool is_wrapped = cuts_wrapped(contour.periods, Hyperplane<N>::across(N - 1, 0.0));
+      if (is_wrapped && !contour.periods.empty()) {
+        axis = unrolled_axis(axis, N - 1, contour.periods);
+        if (axis.period > 0.0) extent = axis;
+      } else if (!is_wrapped) {
         remark(kUnrolledForCuts);
         const Contour<N, double> unrolled = unroll(contour).contour;
         extent.first = std::numeric_limits<double>::infinity();

@@ -92,7 +92,7 @@ void stretch(Contour<N, Real>& contour, const std::vector<double>& factors) {
 /// What cuts of a wrapped contour need to know of it.
 struct Wrapped {
   std::vector<double> periods = {};  ///< period_numbers, before its axes are scaled
-  bool is_unrolled = false;          ///< for cuts across a period
+  bool is_unrolled = false;          ///< for cuts that wrapped contours refuse
 };
 
 /// Cuts a contour after its axes are scaled; all cuts of one direction in one pass.
@@ -101,7 +101,7 @@ Wrapped cut_contour_of(Contour<N, Real> contour, const std::vector<double>& fact
                        std::vector<ContourResult>& results, ProgressBar& bar) {
   Wrapped wrapped{period_numbers(contour.periods)};
   stretch(contour, factors);
-  std::optional<Contour<N, Real>> unrolled;  // for cuts across a period
+  std::optional<Contour<N, Real>> unrolled;  // for cuts that wrapped contours refuse
   for (std::size_t first = 0, end = 0; first < results.size(); first = end) {
     const Cut& like = *results[first].cut;
     std::vector<Hyperplane<N>> hyperplanes;
@@ -110,9 +110,9 @@ Wrapped cut_contour_of(Contour<N, Real> contour, const std::vector<double>& fact
          ++end)
       hyperplanes.push_back(hyperplane_of<N>(*results[end].cut, factors));
     Stopwatch watch;
-    const bool is_across = crosses_period(contour, hyperplanes.front());
-    if (is_across && !unrolled) unrolled = unroll(contour).contour;
-    auto cuts = slice_stack(is_across ? *unrolled : contour, hyperplanes, {own.threads(), bar.stage("slice")});
+    const bool is_refused = !cuts_wrapped(contour.periods, hyperplanes.front());
+    if (is_refused && !unrolled) unrolled = unroll(contour).contour;
+    auto cuts = slice_stack(is_refused ? *unrolled : contour, hyperplanes, {own.threads(), bar.stage("slice")});
     for (std::size_t i = 0; i < cuts.size(); ++i) {
       ContourResult& result = results[first + i];
       result.image_dim = N;
@@ -454,9 +454,10 @@ class SliceCommand final : public Command {
       std::optional<std::uint64_t> folded_cells;
       attributes_.keep_sizes_of(input.image);
       remark(take_grid(input, file(), options_, tiling, folded_cells));
-      space = tiling.of_cells                                     ? space_of_cells(input.image, tiling.cell_faces)
-              : tiling.periodic.empty() || !tiling.curved.empty() ? space_of(input.image, tiling.curved)
-                                                                  : space_of_periods(input.image, tiling.periodic);
+      space = tiling.of_cells ? space_of_cells(input.image, tiling.cell_faces)
+              : tiling.periodic.empty() || !tiling.curved.empty()
+                  ? space_of(input.image, tiling.curved, tiling.periodic)
+                  : space_of_periods(input.image, tiling.periodic);
       refuse_attributes_on_lattices(attributes_, tiling);
     } else {
       options_.require_to_5d();
@@ -464,7 +465,7 @@ class SliceCommand final : public Command {
     }
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
-    require_contour(input, isovalue, options_.allows_empty());
+    require_contour(input, isovalue, options_.allows_empty(), tiling.lattice);
     const double read_seconds = watch.lap();
     std::vector<ContourResult> of_whole;
     std::vector<std::size_t> places;

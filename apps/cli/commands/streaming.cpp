@@ -34,10 +34,7 @@ class StreamedFiles {
   StreamedFiles(const Grid<N>& grid, const AxisPeriods<N>& periods, const StreamOptions& options,
                 std::vector<ContourResult>& results)
       : options_(options), results_(results) {
-    for (int a = 0; a < N; ++a)
-      if (grid.axes[a].size() < 2)
-        throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
-                                      axis_label(grid.axes[a].name, static_cast<std::size_t>(a))));
+    require_samples(grid.axes, options.lattice);
     for (const ContourResult& result : results) {
       files_.push_back(std::make_unique<PendingContour<N, Real>>(written_.stage(result.output), grid, result.isovalue,
                                                                  options.compression, periods));

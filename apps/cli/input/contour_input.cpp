@@ -84,9 +84,20 @@ std::vector<std::string> take_grid(ReadImageResult& input, const std::string& fi
   return {remark, std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, input.image)};
 }
 
-CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved) {
+CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved,
+                  const std::vector<std::string>& periodic) {
   CutSpace space = space_of(image);
   for (const CurvedAxis& one : curved) space.axes[static_cast<std::size_t>(one.axis)] = cut_axis_of(one);
+  if (curved.empty() || periodic.empty()) return space;
+  const auto take_periods = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+    const std::vector<CurvedSeam<N>> seams = seams_of(owned.grid, curved, periodic);
+    for (std::size_t a = 0; a < N; ++a) {
+      std::vector<double> along;
+      for (const CurvedSeam<N>& seam : seams) along.push_back(seam.vector[a]);
+      (void)take_period(space.axes[a], along);
+    }
+  };
+  std::visit([&](const auto& typed) { std::visit(take_periods, typed); }, image);
   return space;
 }
 
@@ -117,11 +128,11 @@ CutSpace space_of_longer(const OwnedImage<T, N>& owned, const std::vector<std::s
     if (is_longer[a]) axis = with_repeated_sample(axis, periods[a]);
   }
   CutSpace space = space_of(grid);
-  // a coordinate is modulo the period if it depends on one axis of the image only
   for (std::size_t a = 0; a < N; ++a) {
-    bool is_own = is_longer[a];
-    for (std::size_t b = 0; b < N; ++b) is_own = is_own && (b == a || grid.linear[a][b] == 0.0);
-    if (is_own) space.axes[a].period = space.axes[a].last - space.axes[a].first;
+    std::vector<double> along;
+    for (std::size_t b = 0; b < N; ++b)
+      if (is_longer[b]) along.push_back(grid.linear[a][b] * periods[b]);
+    (void)take_period(space.axes[a], along);
   }
   return space;
 }
@@ -312,7 +323,7 @@ void ContourInputCommand::contour_5d(const ReadImage5dResult& input, ExtractOpti
                                      Stopwatch& watch, ContourInput& result) const {
   options_.require_to_5d();
   result.variable = input.info.variable;
-  require_contour(input, *result.isovalue, allows_empty());
+  require_contour(input, *result.isovalue, allows_empty(), std::nullopt);
   result.last_axis = space_of(input.image).axes.back();
   result.ends = std::visit([](const auto& owned) { return ends_of_grid(owned.grid); }, input.image);
   result.single_precision = options_.single_precision();
@@ -358,7 +369,7 @@ ContourInput ContourInputCommand::read_contour(ProgressBar& bar, bool keep_image
   ReadImageResult input = std::move(std::get<ReadImageResult>(any));
   remark(take_grid(input, file(), options_, tiling, result.folded_cells));
   result.variable = input.info.variable;
-  require_contour(input, *result.isovalue, allows_empty());
+  require_contour(input, *result.isovalue, allows_empty(), tiling.lattice);
   result.is_curved = !tiling.curved.empty();
   result.lattice = tiling.lattice;
   if (attributes_of_meshes_ != nullptr) refuse_attributes_on_lattices(*attributes_of_meshes_, tiling);

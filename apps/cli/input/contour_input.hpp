@@ -61,8 +61,9 @@ std::string take_longitudes(const Any& image, const ExtractionOptions& options, 
   };
   return std::visit([&](const auto& typed) { return std::visit(of_one, typed); }, image);
 }
-/// The space of an image with the ranges of its curved coordinates.
-CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved);
+/// The space of an image with the ranges of its curved coordinates. `periodic`: the axes of --periodic.
+CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved,
+                  const std::vector<std::string>& periodic = {});
 /// As space_of, to the outer faces of cells. `faces`: as in the file.
 CutSpace space_of_cells(const AnyImage& image, const CellFaces& faces);
 

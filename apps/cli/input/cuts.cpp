@@ -15,6 +15,7 @@
 
 #include "base/numbers.hpp"
 #include "tegl/periodic.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl::cli {
 
@@ -157,26 +158,36 @@ std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::jo
 
 }  // namespace
 
+bool take_period(CutAxis& axis, std::span<const double> along) {
+  const auto is_crossing = [](double x) { return x != 0.0; };
+  if (std::count_if(along.begin(), along.end(), is_crossing) != 1) return false;
+  axis.period = std::abs(*std::find_if(along.begin(), along.end(), is_crossing));
+  axis.last = axis.first + axis.period;
+  return true;
+}
+
 template <int N>
 CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
   const auto at = static_cast<std::size_t>(a);
-  const Period<N>* own = nullptr;
-  std::size_t crossed = 0;
+  std::vector<double> along;
+  double before = 0.0, after = 0.0;  // `unroll` moves simplices to the end of the period
   for (const Period<N>& period : periods) {
-    const double along = period.vector[at];
-    if (along == 0.0) continue;
-    // `unroll` moves simplices to the end of the period
-    axis.first += std::min(0.0, along);
-    axis.last += std::max(0.0, along);
-    own = &period;
-    ++crossed;
+    along.push_back(period.vector[at]);
+    before += std::min(0.0, along.back());
+    after += std::max(0.0, along.back());
   }
-  if (crossed != 1) return axis;
+  if (!take_period(axis, along)) {
+    axis.first += before;
+    axis.last += after;
+    return axis;
+  }
+  // the seam, if it is across the axis
+  const Period<N>& own =
+      *std::find_if(periods.begin(), periods.end(), [&](const auto& p) { return p.vector[at] != 0.0; });
   for (std::size_t b = 0; b < N; ++b)
-    if (b != at && std::abs(own->dual[b]) > 1e-9 * std::abs(own->dual[at])) return axis;
-  const double start = own->start / own->dual[at];
-  std::tie(axis.first, axis.last) = std::minmax({start, start + own->vector[at]});
-  axis.period = std::abs(own->vector[at]);
+    if (b != at && std::abs(own.dual[b]) > 1e-9 * std::abs(own.dual[at])) return axis;
+  const double start = own.start / own.dual[at];
+  std::tie(axis.first, axis.last) = std::minmax({start, start + own.vector[at]});
   return axis;
 }
 
@@ -186,7 +197,7 @@ template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<5>>&);
 
 double within_period(const CutAxis& axis, double place) {
   if (!(axis.period > 0.0) || (place >= axis.first && place <= axis.last)) return place;
-  return std::clamp(place - std::floor((place - axis.first) / axis.period) * axis.period, axis.first, axis.last);
+  return place_in_period(place, axis.first, axis.period);
 }
 
 std::vector<SpelledNumber> parse_spelled_numbers(const std::string& option, std::string_view text) {

@@ -48,8 +48,12 @@ struct CutAxis {
   double period = 0;  ///< if above 0: places that differ by it are the same, and first to last is one period
 };
 
-/// The axis with the range of the unrolled contour, which is a whole period if the contour's share of a period depends
-/// on this coordinate only. `axis`: with the range of the wrapped contour. N is 3 to 5.
+/// Makes an axis periodic, from its first place on, if exactly one period crosses it. `along`: the components of the
+/// periods' vectors along the axis. Returns whether it is periodic.
+bool take_period(CutAxis& axis, std::span<const double> along);
+
+/// The axis of a wrapped contour: periodic if one period crosses it, otherwise with the range of the unrolled contour.
+/// `axis`: with the range of the wrapped contour. N is 3 to 5.
 template <int N>
 CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods);
 

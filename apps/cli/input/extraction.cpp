@@ -19,6 +19,7 @@
 
 #include "base/numbers.hpp"
 #include "base/statistics.hpp"
+#include "base/word_list.hpp"
 #include "io/meshes/meshes.hpp"
 #include "output/output.hpp"
 #include "tegl/normals.hpp"
@@ -89,15 +90,12 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
 void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> without_periods) {
   app_ = &app;
   without_periods_ = std::move(without_periods);
-  options_.push_back(
-      app.add_option("--periodic", periodic_,
-                     "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
-                     "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
-                     "for longitudes, or as in x=2.5; auto: longitudes that span 360 degrees; none: no axis, and no "
-                     "remark on such longitudes")
-          ->delimiter(',')
-          ->allow_extra_args(false)
-          ->type_name("AXES"));
+  options_.push_back(add_word_list(app, "--periodic", periodic_,
+                                   "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
+                                   "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
+                                   "for longitudes, or as in x=2.5; auto: longitudes that span 360 degrees; none: no "
+                                   "axis, and no remark on such longitudes")
+                         ->type_name("AXES"));
   options_.push_back(app.add_option("--lattice", lattice_,
                                     "samples on a staggered lattice: odd layers are shifted by half a step along the "
                                     "axes before; triangular (2D), fcc or bcc (3D), d4 or fcc_in_time (4D); cubic: on "
@@ -439,7 +437,7 @@ std::vector<NamedPeriod> named_periods(const std::vector<AxisNames>& axes, const
                     fmt::format("--periodic names the axis {} twice; expected it once", name));
       NamedPeriod& one = found.emplace_back(NamedPeriod{axis, std::nullopt});
       if (equal != std::string::npos) one.period = parse_finite("--periodic", name.substr(equal + 1));
-      if (one.period == 0.0)
+      if (one.period && !(*one.period > 0.0))
         throw Error(ErrorCode::InvalidArgument, fmt::format("--periodic {}; expected a positive period", name));
     }
   }
@@ -537,15 +535,21 @@ EmptyResult outside_error(double isovalue, const ValueRange& range, const std::s
                   texts[0], texts[1], texts[2], unit.empty() ? "" : " " + unit, kAllow));
 }
 
-namespace {
-
-void require_samples(std::span<const Axis> axes) {
+void require_samples(std::span<const Axis> axes, std::optional<Lattice> lattice) {
   for (std::size_t a = 0; a < axes.size(); ++a) {
     if (axes[a].size() > 1) continue;
     throw EmptyResult(fmt::format("the axis '{}' has 1 sample; expected at least 2 samples along every axis",
                                   axis_label(axes[a].name, a)));
   }
+  if (!lattice || dimension(*lattice) != static_cast<int>(axes.size())) return;  // other dimensions: an error later
+  const std::size_t layers = axes.size() - (*lattice == Lattice::fcc_in_time ? 2 : 1);
+  if (axes[layers].size() < least_layers(*lattice))
+    throw EmptyResult(fmt::format("the axis '{}' has {} layers; expected at least {} layers on the lattice {}",
+                                  axis_label(axes[layers].name, layers), axes[layers].size(), least_layers(*lattice),
+                                  name_of(*lattice)));
 }
+
+namespace {
 
 template <class Input>
 void require_both_sides(const Input& input, double isovalue, double of_samples) {
@@ -569,14 +573,16 @@ static double checked_isovalue(const ReadResult& input, double isovalue, bool al
   return of_samples;
 }
 
-double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty) {
-  const auto require_tiles = [&](const auto& owned) { require_samples(owned.grid.axes); };
+double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty,
+                       std::optional<Lattice> lattice) {
+  const auto require_tiles = [&](const auto& owned) { require_samples(owned.grid.axes, lattice); };
   std::visit([&](const auto& typed) { std::visit(require_tiles, typed); }, input.image);
   return checked_isovalue(input, isovalue, allow_empty);
 }
 
-double require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty) {
-  std::visit([](const auto& owned) { require_samples(owned.grid.axes); }, input.image);
+double require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty,
+                       std::optional<Lattice> lattice) {
+  std::visit([&](const auto& owned) { require_samples(owned.grid.axes, lattice); }, input.image);
   return checked_isovalue(input, isovalue, allow_empty);
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -160,11 +161,16 @@ inline int image_dim(const AnyImage5d&) { return 5; }
 /// empty.
 EmptyResult outside_error(double isovalue, const ValueRange& range, const std::string& unit);
 
-/// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: at least two samples along every
-/// axis, and samples on both sides of the isovalue. If only the latter fails, it is no error with `allow_empty`.
-/// Return the isovalue of the samples, which may be stored integers (ImageInfo::scaling).
-double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty);
-double require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty);
+/// Throws EmptyResult unless an image with these axes has cells: at least two samples along every axis, and the layers
+/// that the lattice needs.
+void require_samples(std::span<const Axis> axes, std::optional<Lattice> lattice);
+
+/// Throws EmptyResult, with the reason, unless a contour of the isovalue can exist: cells (require_samples), and
+/// samples on both sides of the isovalue. If only the latter fails, it is no error with `allow_empty`. Return the
+/// isovalue of the samples, which may be stored integers (ImageInfo::scaling).
+double require_contour(const ReadImageResult& input, double isovalue, bool allow_empty, std::optional<Lattice> lattice);
+double require_contour(const ReadImage5dResult& input, double isovalue, bool allow_empty,
+                       std::optional<Lattice> lattice);
 
 /// The remark that missing samples prevent a contour.
 std::string remark_on_missing(double isovalue);
@@ -207,22 +213,10 @@ Contour<N, Real> unrolled_for(Contour<N, Real> contour, const std::string& outpu
   return std::move(result.contour);
 }
 
-/// Whether a hyperplane crosses a period of a wrapped contour, which must be unrolled before it is cut there.
-template <int N, class Real>
-bool crosses_period(const Contour<N, Real>& contour, const Hyperplane<N>& cut) {
-  return std::any_of(contour.periods.begin(), contour.periods.end(), [&](const Period<N>& period) {
-    double along = 0, size = 0;
-    for (int a = 0; a < N; ++a) {
-      along += period.vector[a] * cut.normal[a];
-      size += std::abs(period.vector[a] * cut.normal[a]);
-    }
-    return std::abs(along) > 1e-9 * size;
-  });
-}
-
-/// The remark on cuts that cross a period.
+/// The remark on cuts across periods for which a wrapped contour is unrolled.
 inline constexpr const char* kUnrolledForCuts =
-    "the contour is unrolled for cuts across a period: it ends at both ends of its periodic axes";
+    "the contour is unrolled for cuts across a period that are oblique or cross several: it ends at both ends of its "
+    "periodic axes";
 
 /// Extracts the contour of an image whose cells are divided and passes it to `use`, as extract_and_use.
 template <class Result, class T, int N, class Use>

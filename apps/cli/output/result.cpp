@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <string_view>
 #include <utility>
 
 #include "base/numbers.hpp"
@@ -135,7 +136,13 @@ std::size_t axis_called(const std::string& name, const std::vector<std::string>&
   constexpr std::string_view kLetters = "xyztu";
   for (std::size_t a = 0; a < labels.size(); ++a)
     if (equal_ignoring_case(name, labels[a])) return a;
-  return std::min(name.size() == 1 ? kLetters.find(name[0]) : std::string_view::npos, labels.size());
+  const std::size_t a = std::min(name.size() == 1 ? kLetters.find(name[0]) : std::string_view::npos, labels.size());
+  // An axis that is named by a letter itself, as in a mesh in the plane of x and z, has no other letter.
+  const auto is_letter = [&](const std::string& label) {
+    return std::any_of(kLetters.begin(), kLetters.end(),
+                       [&](char letter) { return equal_ignoring_case(label, std::string_view(&letter, 1)); });
+  };
+  return a < labels.size() && is_letter(labels[a]) ? labels.size() : a;
 }
 
 std::string dump(const Json& json) {

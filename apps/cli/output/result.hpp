@@ -29,8 +29,8 @@ std::string report_line(std::string_view label, const Styled& value);
 /// The name of an axis, or the customary letter x, y, z, t for an unnamed one.
 std::string axis_label(const std::string& name, std::size_t axis);
 
-/// The index of the axis with that name (ignoring case), or with that customary letter if no name matches;
-/// labels.size() if there is none.
+/// The index of the axis with that name (ignoring case), or with that customary letter if no name matches and the axis
+/// is not named by another letter; labels.size() if there is none.
 std::size_t axis_called(const std::string& name, const std::vector<std::string>& labels);
 
 /// Formats a document, with a newline at the end. Invalid UTF-8 (units in old files) is replaced; control characters

@@ -66,7 +66,7 @@ void set_sample(Options& options, std::string_view given) {
 
 void set_seed(Options& options, std::string_view given) { set_number("--seed", given, options.seed, std::uint64_t{0}); }
 
-void set_threads(Options& options, std::string_view given) { set_number("--threads", given, options.threads, 1U); }
+void set_threads(Options& options, std::string_view given) { set_number("--threads", given, options.threads, 0U); }
 
 void set_group(Options& options, std::string_view given) {
   using Pair = std::pair<std::string_view, GroupKind>;
@@ -517,7 +517,7 @@ options of --certify
                                     prints the histogram of Euler characteristics
   --sample COUNT                    this many tiles with random signatures and choices in all faces (N = 2 ... 6)
   --seed S                          seed of the sample (default 1)
-  --threads T                       number of threads, with --all and --sample (default: one per processor)
+  --threads T                       number of threads, with --all and --sample (default 0: one per processor)
   --json                            the same as JSON
 
 options of --out

@@ -4,6 +4,7 @@
 // fewer samples than cubic grids for the same accuracy, and have fewer ambiguous cells or none.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -35,6 +36,8 @@ enum class Lattice : std::uint8_t {
 /// The step between layers, in steps along the other axes, for which the lattice has all its symmetries: sqrt(3) / 2
 /// (triangular), sqrt(2) / 2 (fcc), 1 / 2 (bcc, d4). Other steps give a stretched lattice.
 [[nodiscard]] double layer_step(Lattice lattice) noexcept;
+/// The minimum number of layers: 3 for d4, whose cells extend over three layers, else 2.
+[[nodiscard]] std::size_t least_layers(Lattice lattice) noexcept;
 
 /// As `extract_lattice`, with counts and times.
 template <Coordinate Real = float, Value T, int N>
@@ -87,8 +90,9 @@ requires DimensionBetween<N, 2, 4>
 /// The cells between the samples of an image on a lattice, with their values; points are numbered as samples,
 /// axis 0 fastest. `extract` of it is the contour of the image. Cells that would need samples outside of the image are
 /// left out, so its sides are uneven; at the first and last layer, octahedra are cut to pyramids. Errors:
-/// InvalidArgument (a lattice of another dimension, uneven steps along a shifted axis, fewer than 2 layers), TooLarge
-/// (2^32 samples or cells or more). O(P) time; about 100 bytes per sample of fcc, 130 of bcc, 110 of d4.
+/// InvalidArgument (a lattice of another dimension, uneven steps along a shifted axis, fewer than
+/// `least_layers`), TooLarge (2^32 samples or cells or more). O(P) time; about 100 bytes per sample of fcc, 130 of bcc,
+/// 110 of d4.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Complex<N> lattice_complex(const Image<T, N>& image, Lattice lattice);

@@ -72,11 +72,12 @@ struct CutMeasures {
 /// linear in t. If the curve jumps because parts are flat at one time, the result is the limit from below; at the
 /// contour's first time, the limit from above. This is the cut that `slice` makes, except if missing values leave no
 /// contour before that time: `slice` then takes the limit from above. Values beyond the contour give 0. The cuts of a
-/// wrapped contour are made and measured one by one, in O(#S) each; a content is as in Measures.
+/// wrapped contour are made as by `slice_stack`, 16 in one pass, and measured; a content is as in Measures. If the last
+/// axis is periodic, values are modulo its period.
 ///
 /// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range, a wrapped contour
-/// whose last axis is periodic); Cancelled. O(#S + h) time, and that of `measure` for open faces, for h pairs of a
-/// simplex and its cut; memory as `measure`, plus up to 32 MiB, or 32 bytes for each value. Thread-safe.
+/// with several periods along its last axis); Cancelled. O(#S + h) time, and that of `measure` for open faces, for h
+/// pairs of a simplex and its cut; memory as `measure`, plus up to 32 MiB, or 32 bytes for each value. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,

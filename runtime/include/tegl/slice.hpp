@@ -57,12 +57,17 @@ namespace tegl {
 /// contour does not distinguish them: the limit may differ from the layer's contour by parts that are flat in the layer
 /// or lie along samples of the isovalue. `slice_image` reads the image and gives the layer's contour.
 ///
+/// A wrapped contour (tegl/periodic.hpp) is cut by hyperplanes along all of its periods, and the cut is wrapped, too;
+/// or across an axis that one period crosses. Then the place is modulo this period, and the cut is that of the
+/// contour's endless repetition along it: complete and joined at the seam, also if the seam is not plane, with the
+/// other periods. `cuts_wrapped` tells which; other hyperplanes across a period are refused.
+///
 /// Quadrilaterals are split by the shorter diagonal; prisms (N = 5) into three tetrahedra, in the order of the
 /// contour's vertex numbers. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
-/// attributes or normals of another number), Cancelled. If the hyperplane is beyond the contour, the cut is empty.
-/// O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory. The result does not depend on
-/// the number of threads. Thread-safe.
+/// attributes or normals of another number, a wrapped contour unless `cuts_wrapped`), Cancelled. If the hyperplane is
+/// beyond the contour, the cut is empty. O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c)
+/// memory. The result does not depend on the number of threads. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane,
@@ -85,6 +90,17 @@ requires DimensionBetween<N, 3, 5>
     const WorkOptions& work = {}) {
   return slice_stack(contour, std::span<const Hyperplane<N>>(hyperplanes.begin(), hyperplanes.size()), work);
 }
+
+/// Whether `slice` cuts a wrapped contour with these periods by the hyperplane; if not, unroll it first. Throws
+/// InvalidArgument if the normal is 0 or not finite. N = 3 to 5.
+template <int N>
+requires DimensionBetween<N, 3, 5>
+[[nodiscard]] bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods,
+                                const Hyperplane<N>& hyperplane);
+
+/// A place on a periodic axis, moved by multiples of the period into [first, first + period). Unchanged if it is not
+/// finite or the period is not positive.
+[[nodiscard]] double place_in_period(double place, double first, double period);
 
 /// As `slice_image`, with counts and times of the extraction.
 template <Coordinate Real = float, Value T, int N>

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <optional>
 #include <utility>
+
+#include <fmt/ranges.h>
+#include <Eigen/LU>
 
 #include "base/common.hpp"
 #include "base/sample_reader.hpp"
@@ -26,9 +30,13 @@ using Sizes = std::array<std::uint64_t, 3>;
 /// An open file with the chosen array.
 struct OpenVtkImage {
   explicit OpenVtkImage(const fs::path& path, const Progress& progress) : file(path, progress) {
-    if (file.type() != "ImageData" && file.type() != "RectilinearGrid")
-      fail(ErrorCode::UnsupportedData, path, "holds a mesh ({}); expected an image: ImageData or RectilinearGrid",
-           shown(file.type()));
+    if (file.type() != "ImageData" && file.type() != "RectilinearGrid") {
+      const char* const extension = file.type() == "UnstructuredGrid" ? ".vtu"
+                                    : file.type() == "StructuredGrid" ? ".vts"
+                                                                      : nullptr;
+      fail(ErrorCode::UnsupportedData, path, "holds a mesh ({}); expected an image: ImageData or RectilinearGrid{}",
+           shown(file.type()), extension ? fmt::format(", or the extension {} for this mesh", extension) : "");
+    }
     all = variables_of(file);
   }
 
@@ -55,6 +63,11 @@ RawGrid uniform_grid(const OpenVtkImage& image, const std::array<std::size_t, 3>
   const auto origin = file.numbers(file.data(), "Origin", 3, {0, 0, 0});
   const auto spacing = file.numbers(file.data(), "Spacing", 3, {1, 1, 1});
   const auto direction = file.numbers(file.data(), "Direction", 9, {1, 0, 0, 0, 1, 0, 0, 0, 1});
+  const double size = Eigen::Map<const Eigen::Matrix3d>(direction.data()).determinant();
+  const bool is_3d = std::ranges::all_of(image.sizes, [](std::uint64_t count) { return count > 1; });
+  if (is_3d && !(std::abs(size) > 1e-12))
+    fail(ErrorCode::MalformedFile, file.path(), "Direction is '{}', whose determinant is {}; expected three directions",
+         fmt::join(direction, " "), size);
   const VtkExtent whole = whole_extent(file);
   const double shift = image.variable.on_cells ? 0.5 : 0.0;
   Eigen::Matrix3d affine;

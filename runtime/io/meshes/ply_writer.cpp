@@ -12,6 +12,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <set>
+#include <string>
 #include <type_traits>
 
 #include "base/block_writer.hpp"
@@ -36,6 +38,7 @@ std::string one_line(std::string text) {
 /// An attribute and the names of its properties.
 struct Properties {
   const Attribute* attribute;
+  std::string line;  ///< the attribute's name without control characters, different from all others
   std::vector<std::string> names;
   bool are_bytes = false;  ///< red, green and blue, which viewers display
 };
@@ -43,8 +46,14 @@ struct Properties {
 /// Chooses property names, which are single words; comments hold the attributes' names and units.
 std::vector<Properties> properties_of(std::span<const Attribute> attributes, FileNames names) {
   std::vector<Properties> result;
+  std::set<std::string> unchanged;
+  for (const Attribute& attribute : attributes)
+    if (one_line(attribute.name) == attribute.name) unchanged.insert(attribute.name);
+  FileNames lines(unchanged);  // names that differ only in control characters stay apart
   for (const Attribute& attribute : attributes) {
-    Properties& properties = result.emplace_back(Properties{&attribute, {}, is_color_of_bytes(attribute)});
+    std::string line = unchanged.contains(attribute.name) ? attribute.name : lines.make(one_line(attribute.name));
+    Properties& properties =
+        result.emplace_back(Properties{&attribute, std::move(line), {}, is_color_of_bytes(attribute)});
     if (properties.are_bytes) {
       for (const char* const name : {"red", "green", "blue"}) properties.names.push_back(names.make(name));
       continue;
@@ -144,7 +153,7 @@ class PlyWriter {
     for (const Properties& properties : all) {
       const Attribute& attribute = *properties.attribute;
       text += fmt::format("comment tegl {} attribute {} {} {}\n", kind, properties.names[0], attribute.width,
-                          one_line(attribute.name));
+                          properties.line);
       if (!attribute.unit.empty())
         text += fmt::format("comment tegl {} unit {} {}\n", kind, properties.names[0], one_line(attribute.unit));
     }

@@ -46,6 +46,8 @@ struct FileMesh {
   std::optional<double> time;
   std::string variable;
   std::vector<std::string> remarks;
+  std::vector<std::string> doubts;   ///< remarks on values of which one of several is taken, with the file's name
+  std::vector<std::size_t> numbers;  ///< of the cells in the file; empty: as here
 };
 
 /// Adds the faces of a prism between two polygons.
@@ -143,7 +145,13 @@ void add_cells(const StoredCells& stored, FileMesh& mesh, std::vector<std::size_
           mesh.face_corners.push_back(point_of(stored.face_corners[static_cast<std::size_t>(i)]));
         mesh.face_ends.push_back(mesh.face_corners.size());
       }
+    const std::size_t before = mesh.types.size();
     add_cell(stored.types[c], own, c, mesh, path);
+    if (mesh.numbers.empty() && c + 1 != mesh.types.size()) {  // the first cell with another number than in the file
+      mesh.numbers.resize(before);
+      std::iota(mesh.numbers.begin(), mesh.numbers.end(), std::size_t{0});
+    }
+    if (!mesh.numbers.empty() || c + 1 != mesh.types.size()) mesh.numbers.resize(mesh.types.size(), c);
     kept.push_back(c);
   }
   if (std::none_of(mesh.types.begin(), mesh.types.end(),
@@ -254,6 +262,22 @@ FileMesh read_table(const fs::path& path, const CellMeshOptions& options, const 
   return mesh;
 }
 
+/// Adds a remark if points of several pieces at one place have different values, of which the first is taken.
+void note_differing_values(const StoredCells& stored, FileMesh& mesh, const std::string& name, const fs::path& path) {
+  std::size_t differing = 0, one = 0;
+  for (std::size_t p = 0; p < stored.same_point.size(); ++p) {
+    const double value = mesh.values[p], taken = mesh.values[stored.same_point[p]];
+    if (value == taken || (std::isnan(value) && std::isnan(taken))) continue;
+    if (differing++ == 0) one = p;
+  }
+  if (differing == 0) return;
+  mesh.doubts.push_back(fmt::format(
+      "{}: '{}' has different values at {} point{} that pieces have in common, such as {} and {} at ({}, {}, {}); the "
+      "value of the first piece is taken",
+      path.string(), name, differing, differing == 1 ? "" : "s", mesh.values[stored.same_point[one]], mesh.values[one],
+      stored.points[3 * one], stored.points[3 * one + 1], stored.points[3 * one + 2]));
+}
+
 FileMesh read_vtk(const fs::path& path, const CellMeshOptions& options, const Progress& progress) {
   require_readable_file(path);
   const VtkFile file(path, progress);
@@ -272,6 +296,10 @@ FileMesh read_vtk(const fs::path& path, const CellMeshOptions& options, const Pr
   const ValueArray values =
       chosen_part(read_cell_values(file, variable.parent(), variable.name, variable.components, progress), variable);
   mesh.values = std::visit([](const auto& all) { return std::vector<double>(all.begin(), all.end()); }, values);
+  for (const VtkVariable& one : repeated_variables(file))
+    if (one.name == variable.name && one.on_cells == variable.on_cells)
+      mesh.doubts.push_back(remark_on_repeated(one, path));
+  if (!variable.on_cells) note_differing_values(stored, mesh, variable.name, path);
   if (variable.on_cells) mesh.values = means_at_points(mesh.values, stored, kept);
   set_points(stored.points, mesh, path);
   check_polyhedra(mesh, kept, path);
@@ -282,6 +310,53 @@ FileMesh read_vtk(const fs::path& path, const CellMeshOptions& options, const Pr
 
 FileMesh read_file(const fs::path& path, const CellMeshOptions& options, const Progress& progress) {
   return is_point_table(path) ? read_table(path, options, progress) : read_vtk(path, options, progress);
+}
+
+/// The first cell that differs from that of another mesh with as many cells and points, as text.
+std::string first_other_cell(const FileMesh& one, const FileMesh& first) {
+  const auto number_of = [&](std::size_t c) { return one.numbers.empty() ? c : one.numbers[c]; };
+  const auto ends_at = [](const std::vector<std::uint64_t>& ends, std::size_t i) { return i == 0 ? 0 : ends[i - 1]; };
+  const auto part = [&](const std::vector<Index>& list, std::uint64_t begin, std::uint64_t end) {
+    return std::span(list).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+  };
+  std::uint64_t begin = 0;
+  for (std::size_t c = 0; c < one.types.size(); ++c) {
+    if (one.types[c] != first.types[c])
+      return fmt::format("cell {} is a {}, and a {} there", number_of(c), name_of(one.types[c]),
+                         name_of(first.types[c]));
+    const std::uint64_t end = one.ends.empty() ? begin + corner_count(one.types[c]) : one.ends[c];
+    const std::uint64_t other_end = first.ends.empty() ? begin + corner_count(first.types[c]) : first.ends[c];
+    const auto own = part(one.corners, begin, end), other = part(first.corners, begin, other_end);
+    if (!std::ranges::equal(own, other))
+      return fmt::format("cell {} ({}) has the points {}, and {} there", number_of(c), name_of(one.types[c]),
+                         fmt::join(own, ", "), fmt::join(other, ", "));
+    begin = end;
+    if (one.face_lists_ends.empty() || first.face_lists_ends.empty()) continue;
+    bool are_equal = one.face_lists_ends[c] == first.face_lists_ends[c];
+    for (std::uint64_t f = ends_at(one.face_lists_ends, c); are_equal && f < one.face_lists_ends[c]; ++f) {
+      const auto face = static_cast<std::size_t>(f);
+      const std::uint64_t start = ends_at(one.face_ends, face);
+      are_equal = one.face_ends[face] == first.face_ends[face] &&
+                  std::ranges::equal(part(one.face_corners, start, one.face_ends[face]),
+                                     part(first.face_corners, start, one.face_ends[face]));
+    }
+    if (!are_equal) return fmt::format("cell {} ({}) has other faces", number_of(c), name_of(one.types[c]));
+  }
+  return "polyhedra have other faces";
+}
+
+/// How the cells of a mesh differ from those of another, as text; empty if they are equal.
+std::string difference_of_cells(const FileMesh& one, const FileMesh& first) {
+  if (one.dim != first.dim) return fmt::format("they are of {} dimensions, {} there", one.dim, first.dim);
+  if (one.types.size() != first.types.size() || one.points.size() != first.points.size())
+    return fmt::format("{} cells and {} points, {} and {} there", one.types.size(),
+                       one.points.size() / static_cast<std::size_t>(one.dim), first.types.size(),
+                       first.points.size() / static_cast<std::size_t>(first.dim));
+  if (one.types == first.types && one.corners == first.corners && one.ends == first.ends &&
+      one.face_corners == first.face_corners && one.face_ends == first.face_ends &&
+      one.face_lists_ends == first.face_lists_ends)
+    return {};
+  return first_other_cell(one, first);
 }
 
 /// Puts items of a list into an order.
@@ -471,20 +546,16 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
     };
     FileMesh one = read_file(path, options, options.work.progress ? Progress(of_all) : Progress());
     own_times.push_back(one.time);
+    if (mesh.remarks.empty()) mesh.remarks = std::move(one.doubts);  // of the first file that has any
     if (i == 0) {
       first = std::move(one);
       mesh.points = first.points;
       mesh.values = first.values;
       continue;
     }
-    if (one.types != first.types || one.corners != first.corners || one.ends != first.ends ||
-        one.face_corners != first.face_corners || one.face_ends != first.face_ends ||
-        one.face_lists_ends != first.face_lists_ends || one.points.size() != first.points.size())
-      fail(ErrorCode::UnsupportedData, path,
-           "has other cells than {}: {} cells and {} points, {} and {} there; expected "
-           "the same cells at all times",
-           mesh.files[0].string(), one.types.size(), one.points.size() / static_cast<std::size_t>(one.dim),
-           first.types.size(), first.points.size() / static_cast<std::size_t>(first.dim));
+    if (const std::string difference = difference_of_cells(one, first); !difference.empty())
+      fail(ErrorCode::UnsupportedData, path, "has other cells than {}: {}; expected the same cells at all times",
+           mesh.files[0].string(), difference);
     if (one.axis_names != first.axis_names)
       fail(ErrorCode::UnsupportedData, path, "has the axes {}, not {} as {}; expected the same",
            fmt::join(one.axis_names, ", "), fmt::join(first.axis_names, ", "), mesh.files[0].string());
@@ -506,7 +577,7 @@ CellMesh read_cell_mesh(std::span<const fs::path> given, const CellMeshOptions& 
   mesh.face_ends = std::move(first.face_ends);
   mesh.face_lists_ends = std::move(first.face_lists_ends);
   mesh.variable = std::move(first.variable);
-  mesh.remarks = std::move(first.remarks);
+  mesh.remarks.insert(mesh.remarks.begin(), first.remarks.begin(), first.remarks.end());
   mesh.axis_names = std::move(first.axis_names);
   sort_by_own_times(options, own_times, mesh);
   mesh.times = times_of(own_times, options, mesh.files, collection);
@@ -576,6 +647,7 @@ CellMeshInfo describe_cell_mesh(const fs::path& given, const CellMeshOptions& op
   for (const auto& [type, count] : counts) info.cells.emplace_back(name_of_type(type), count);
   info.axis_names = {"x", "y", "z"};
   info.bounds = bounds_of(stored.points, 3);
+  for (const VtkVariable& one : repeated_variables(file)) info.remarks.push_back(remark_on_repeated(one, path));
   for (const VtkVariable& variable : variables_of(file)) {
     constexpr std::uint64_t kMost = std::numeric_limits<int>::max();
     info.arrays.push_back({.name = variable.name,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include <fmt/ranges.h>
 
@@ -49,6 +50,24 @@ std::vector<VtkVariable> variables_of(const VtkFile& file) {
   return all;
 }
 
+std::vector<VtkVariable> repeated_variables(const VtkFile& file) {
+  std::vector<VtkVariable> repeated;
+  const XmlElement& piece = *file.pieces().front();
+  for (const bool on_cells : {false, true}) {
+    std::map<std::string, int> counts;
+    const XmlElement* const parent = piece.child(on_cells ? "CellData" : "PointData");
+    for (const VtkArray& array : file.arrays(parent))
+      if (!is_bookkeeping(*parent, array.name) && ++counts[array.name] == 2)
+        repeated.push_back({array.name, on_cells, array.type, array.components});
+  }
+  return repeated;
+}
+
+std::string remark_on_repeated(const VtkVariable& variable, const std::filesystem::path& path) {
+  return fmt::format("{} has several arrays '{}' of {}; the first is taken", path.string(), variable.name,
+                     variable.on_cells ? "cells" : "points");
+}
+
 std::vector<std::string> scalar_names(const std::vector<VtkVariable>& all) {
   std::vector<std::string> names;
   for (const VtkVariable& one : all)
@@ -61,8 +80,10 @@ VtkVariable choose_variable(const VtkFile& file, const std::vector<VtkVariable>&
     const auto is_scalar = [](const VtkVariable& one) { return one.components == 1; };
     const auto first = std::find_if(all.begin(), all.end(), is_scalar);
     if (first != all.end() && std::count_if(all.begin(), all.end(), is_scalar) == 1) return *first;
+    if (all.empty())
+      fail(ErrorCode::UnsupportedData, file.path(), "has no arrays; expected one with values of points or cells");
     fail(ErrorCode::VariableNotFound, file.path(), "has the arrays {}; expected one with one component, or a choice{}",
-         listed(all), first == all.end() && !all.empty() ? ", such as NAME:0 or NAME:magnitude" : "");
+         listed(all), first == all.end() ? ", such as NAME:0 or NAME:magnitude" : "");
   }
   for (const VtkVariable& one : all) {
     if (one.name == name && one.components == 1) return one;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,11 +31,17 @@ struct VtkVariable {
 /// and cells, and vtkGhostType, are left out.
 std::vector<VtkVariable> variables_of(const VtkFile& file);
 
+/// The arrays of the first piece whose name occurs again among the values of points, or of cells: readers take the
+/// first. Each once.
+std::vector<VtkVariable> repeated_variables(const VtkFile& file);
+/// A remark on one of them.
+std::string remark_on_repeated(const VtkVariable& variable, const std::filesystem::path& path);
+
 /// The names of those with one component.
 std::vector<std::string> scalar_names(const std::vector<VtkVariable>& all);
 
 /// The variable named `name`, which may be NAME:K (component K of a vector) or NAME:magnitude; if it is empty, the only
-/// scalar. Errors: VariableNotFound, with the names that there are.
+/// scalar. Errors: VariableNotFound, with the names that there are; UnsupportedData if there are none.
 VtkVariable choose_variable(const VtkFile& file, const std::vector<VtkVariable>& all, const std::string& name);
 
 /// The chosen part of values with all components; `values` itself for a scalar.

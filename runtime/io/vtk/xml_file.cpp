@@ -141,7 +141,10 @@ XmlFile parse_xml(const fs::path& path, std::string_view last_element, const Pro
   XmlBuilder builder(path, last_element);
   const std::uint64_t size = size_of_file(path);
   for (std::uint64_t at = 0; at < size; at += kXmlBlock) {
-    if (!builder.parse(read_bytes(path, at, kXmlBlock), at + kXmlBlock >= size)) break;
+    const auto block = read_bytes(path, at, kXmlBlock);
+    if (at == 0 && block.size() > 1 && block[0] == 0x1f && block[1] == 0x8b)
+      fail(ErrorCode::UnsupportedFormat, path, "compressed by gzip; expected XML: decompress the file (gunzip)");
+    if (!builder.parse(block, at + kXmlBlock >= size)) break;
     tick(progress, 0.0, path);
   }
   return builder.take();

@@ -83,10 +83,9 @@ void check_complex_options(double isovalue, const ExtractOptions& options) {
         ErrorCode::InvalidArgument,
         "ambiguity resolved by a custom estimator; expected another rule for meshes, lattices and divided cells");
   if (options.normals != Normals::none && options.normals != Normals::differences)
-    throw Error(
-        ErrorCode::InvalidArgument,
-        fmt::format("normals are {}; expected gradient, geometric or flat for meshes, lattices and divided cells",
-                    name_of(options.normals)));
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("{} normals; expected gradient, geometric or flat for meshes, lattices and divided cells",
+                            name_of(options.normals)));
 }
 
 ContourNumbers::ContourNumbers(const CellGroups& cells, const ComplexEdges* edges, std::span<const double> values,

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
+#include <new>
 #include <numeric>
 #include <random>
 #include <string>
@@ -222,6 +223,7 @@ requires DimensionBetween<N, 2, 4> std::vector<Index> delaunay_corners(std::span
   std::vector<double> coordinates = lifted<N>(points);
   Qhull qhull;
   const int exit = qhull.run(N + 1, coordinates, "qhull Qt Q12");
+  if (exit == qh_ERRmem) throw std::bad_alloc();
   if (exit == qh_ERRsingular) refuse_flat(points.size(), N);
   if (exit != 0)
     throw Error(ErrorCode::UnsupportedData, fmt::format("Qhull: {}; expected other points", qhull.message()));

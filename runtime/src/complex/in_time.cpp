@@ -40,9 +40,12 @@ detail::CellGroup prisms_over(const detail::CellGroup& group, std::size_t points
 /// Prisms over polygons are polyhedra.
 detail::Polytopes prisms_over(const detail::Polytopes& polytopes, std::size_t points, std::size_t intervals) {
   for (std::size_t c = 0; polytopes.dim() == 2 && c < polytopes.size(); ++c)
-    if (const std::size_t corners = polytopes.points_of(c).size(); 2 * corners > detail::kPolytopeCorners)
-      throw Error(ErrorCode::InvalidArgument, fmt::format("a polygon of {} corners over time; expected at most {}",
-                                                          corners, detail::kPolytopeCorners / 2));
+    if (const auto corners = polytopes.points_of(c); 2 * corners.size() > detail::kPolytopeCorners)
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("a polygon of {} corners over time, with the points {}, {}, {} and further ones; expected "
+                      "at most {}",
+                      corners.size(), corners[0], corners[1], corners[2], detail::kPolytopeCorners / 2));
   return polytopes.in_time(points, intervals);
 }
 

@@ -56,6 +56,7 @@
 #include "base/periods.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
+#include "cut/periodic_cut.hpp"
 #include "cut/point_numbers.hpp"
 #include "cut/simplex_cut.hpp"
 #include "cut/slice_piece.hpp"
@@ -186,21 +187,17 @@ class Cutter {
     return !any_on;
   }
 
-  /// The periods of the cut of a wrapped contour. Throws InvalidArgument if the hyperplane is not along all of them.
+  /// The periods of the cut of a wrapped contour. Throws InvalidArgument if the hyperplane crosses one.
   [[nodiscard]] std::vector<Period<N - 1>> periods_within() const {
     std::vector<Period<N - 1>> result;
     for (const Period<N>& period : contour_.periods) {
       Period<N - 1>& inside = result.emplace_back();
       inside.vector = family_.within(period.vector);
       inside.dual = family_.within(period.dual);
-      double length = 0.0, inner = 0.0, share = 0.0;
-      for (int a = 0; a < N; ++a) length += period.vector[a] * period.vector[a];
-      for (int a = 0; a + 1 < N; ++a) inner += inside.vector[a] * inside.vector[a];
-      for (int a = 0; a + 1 < N; ++a) share += inside.dual[a] * inside.vector[a];
-      if (std::abs(inner - length) > 1e-9 * length || std::abs(share - 1.0) > 1e-9)
+      if (crosses<N>(family_, period))
         throw Error(ErrorCode::InvalidArgument,
-                    "cut of a wrapped contour across one of its periods; expected a cut along all of them, or an "
-                    "unrolled contour");
+                    "cut of a wrapped contour across one of its periods; expected a cut across an axis with one "
+                    "period, a cut along all periods, or an unrolled contour");
       // the part of <dual, x> that is the same for all points of the cut
       double along = 0.0;
       if (!touching_.empty()) {

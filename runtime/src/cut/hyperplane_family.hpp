@@ -79,6 +79,8 @@ class HyperplaneFamily {
   [[nodiscard]] bool is_along_last_axis() const noexcept {
     return is_across_axis_ && !is_reversed_ && frame_.dropped == N - 1;
   }
+  /// For normals that are a multiple of an axis: 1 if it is positive, else -1. A coordinate is a height times this.
+  [[nodiscard]] double sign() const noexcept { return is_reversed_ ? -1.0 : 1.0; }
   [[nodiscard]] int dropped_axis() const noexcept { return frame_.dropped; }
   [[nodiscard]] bool is_right_handed() const noexcept { return frame_.is_right_handed; }
 

@@ -12,6 +12,7 @@
 #include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "cut/closed_cut.hpp"
+#include "cut/periodic_cut.hpp"
 #include "cut/vertex_range.hpp"
 #include "mesh/validate.hpp"
 
@@ -185,13 +186,33 @@ TouchingSimplices touching_levels(const Contour<N, Real>& contour, const Hyperpl
   return touching;
 }
 
-/// The hyperplanes of a stack that have the same normal.
+/// The place of a hyperplane across a periodic axis, as place_modulo, rounded as the vertices.
+template <class Real, int N>
+double place_on_axis(const HyperplaneFamily<N>& family, const Period<N>& period, double offset) {
+  return static_cast<double>(detail::rounded_at<Real>(detail::place_modulo(family, period, offset)));
+}
+
+/// The hyperplane at a place across the axis of a family, with its direction.
 template <int N>
+Hyperplane<N> across_axis(const HyperplaneFamily<N>& family, double place) {
+  Hyperplane<N> hyperplane = Hyperplane<N>::across(family.dropped_axis(), family.sign() * place);
+  hyperplane.normal[family.dropped_axis()] = family.sign();
+  return hyperplane;
+}
+
+/// The hyperplanes of a stack that have the same normal.
+template <int N, class Real>
 struct Parallels {
   Vector<N> normal;
   HyperplaneFamily<N> family;
+  detail::CrossedPeriods crossed;
   std::vector<double> levels;  ///< ascending, each once
   TouchingSimplices touching;
+  Contour<N, Real> moved;  ///< if they are modulo a period, the simplices that touch them
+
+  [[nodiscard]] const Contour<N, Real>& of(const Contour<N, Real>& contour) const {
+    return crossed.is_modulo ? moved : contour;
+  }
 };
 
 /// A hyperplane of a stack.
@@ -202,22 +223,40 @@ struct StackedCut {
 
 /// Groups the hyperplanes by normal. Throws InvalidArgument as `slice` does.
 template <int N, class Real>
-std::vector<StackedCut> group_by_normal(std::span<const Hyperplane<N>> hyperplanes, std::vector<Parallels<N>>& groups) {
+std::vector<StackedCut> group_by_normal(const Contour<N, Real>& contour, std::span<const Hyperplane<N>> hyperplanes,
+                                        std::vector<Parallels<N, Real>>& groups) {
   std::vector<StackedCut> stack;
   for (const Hyperplane<N>& hyperplane : hyperplanes) {
     auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const Parallels<N>& other) { return other.normal == hyperplane.normal; });
-    if (group == groups.end())
-      group = groups.insert(group, {hyperplane.normal, HyperplaneFamily<N>(hyperplane.normal), {}, {}});
-    const double level = group->family.template level<Real>(hyperplane.offset);
+                              [&](const Parallels<N, Real>& other) { return other.normal == hyperplane.normal; });
+    if (group == groups.end()) {
+      const HyperplaneFamily<N> family(hyperplane.normal);
+      group = groups.insert(
+          group, {hyperplane.normal, family, detail::crossed_periods<N>(family, contour.periods), {}, {}, {}});
+    }
+    const HyperplaneFamily<N>& family = group->family;
+    const double level =
+        group->crossed.is_modulo
+            ? family.sign() * place_on_axis<Real>(family, contour.periods[group->crossed.period], hyperplane.offset)
+            : family.template level<Real>(hyperplane.offset);
     group->levels.push_back(level);
     stack.push_back({static_cast<std::size_t>(group - groups.begin()), level});
   }
-  for (Parallels<N>& group : groups) {
+  for (Parallels<N, Real>& group : groups) {
     std::sort(group.levels.begin(), group.levels.end());
     group.levels.erase(std::unique(group.levels.begin(), group.levels.end()), group.levels.end());
   }
   return stack;
+}
+
+/// Finds the simplices that touch hyperplanes modulo a period.
+template <int N, class Real>
+void move_to_levels(const Contour<N, Real>& contour, Parallels<N, Real>& group, unsigned threads) {
+  std::vector<double> places;
+  for (const double level : group.levels) places.push_back(group.family.sign() * level);
+  std::sort(places.begin(), places.end());
+  group.moved = detail::moved_to_places(contour, group.crossed.period, group.family.dropped_axis(),
+                                        std::span<const double>(places), {threads, {}});
 }
 
 constexpr const char* kCancelledSlice = "cuts cancelled";
@@ -229,6 +268,13 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const Hyperplane<N>& hyperplane,
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
+  if (const detail::CrossedPeriods crossed = detail::crossed_periods<N>(family, contour.periods); crossed.is_modulo) {
+    const std::vector<double> places = {
+        place_on_axis<Real>(family, contour.periods[crossed.period], hyperplane.offset)};
+    return slice(detail::moved_to_places(contour, crossed.period, family.dropped_axis(), places,
+                                         {work.threads, detail::part_of(work.progress, 0.0, 0.6)}),
+                 across_axis<N>(family, places[0]), {work.threads, detail::part_of(work.progress, 0.6, 1.0)});
+  }
   const double level = family.template level<Real>(hyperplane.offset);
   const VertexSides sides(contour, family, level, {work.threads, detail::part_of(work.progress, 0.0, 0.4)});
   detail::require_attributes(contour);
@@ -244,19 +290,21 @@ template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack(
     const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work) {
-  std::vector<Parallels<N>> groups;
-  const std::vector<StackedCut> stack = group_by_normal<N, Real>(hyperplanes, groups);
+  std::vector<Parallels<N, Real>> groups;
+  const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, groups);
   detail::require_sound(contour);
   const auto steps = static_cast<double>(groups.size() + stack.size());
   // one pass over the contour for each normal
   for (std::size_t i = 0; i < groups.size(); ++i) {
     detail::tell(work.progress, static_cast<double>(i) / steps, kCancelledSlice);
-    groups[i].touching = touching_levels(contour, groups[i].family, groups[i].levels, work.threads);
+    if (groups[i].crossed.is_modulo) move_to_levels(contour, groups[i], work.threads);
+    groups[i].touching = touching_levels(groups[i].of(contour), groups[i].family, groups[i].levels, work.threads);
   }
   const auto cut_of = [&](const StackedCut& cut) {
-    const Parallels<N>& group = groups[cut.parallels];
+    const Parallels<N, Real>& group = groups[cut.parallels];
     const auto place = std::lower_bound(group.levels.begin(), group.levels.end(), cut.level) - group.levels.begin();
-    return detail::cut_simplices(contour, group.family, cut.level, group.touching.of(static_cast<std::size_t>(place)));
+    return detail::cut_simplices(group.of(contour), group.family, cut.level,
+                                 group.touching.of(static_cast<std::size_t>(place)));
   };
   // the cuts: one per thread at a time, so that progress can be reported between them
   std::vector<Contour<N - 1, Real>> cuts(stack.size());

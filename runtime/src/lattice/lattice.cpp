@@ -24,12 +24,13 @@ struct LatticeFacts {
   const char* name;
   int dim;
   double layer_step;
+  std::size_t least_layers;
 };
-constexpr LatticeFacts kLattices[] = {{Lattice::triangular, "triangular", 2, 0.86602540378443864676},
-                                      {Lattice::fcc, "fcc", 3, 0.70710678118654752440},
-                                      {Lattice::bcc, "bcc", 3, 0.5},
-                                      {Lattice::d4, "d4", 4, 0.5},
-                                      {Lattice::fcc_in_time, "fcc_in_time", 4, 0.70710678118654752440}};
+constexpr LatticeFacts kLattices[] = {{Lattice::triangular, "triangular", 2, 0.86602540378443864676, 2},
+                                      {Lattice::fcc, "fcc", 3, 0.70710678118654752440, 2},
+                                      {Lattice::bcc, "bcc", 3, 0.5, 2},
+                                      {Lattice::d4, "d4", 4, 0.5, 3},
+                                      {Lattice::fcc_in_time, "fcc_in_time", 4, 0.70710678118654752440, 2}};
 
 const LatticeFacts& facts_of(Lattice lattice) noexcept {
   return *std::find_if(std::begin(kLattices), std::end(kLattices) - 1,
@@ -46,6 +47,7 @@ std::optional<Lattice> parse_lattice(std::string_view name) noexcept {
 }
 int dimension(Lattice lattice) noexcept { return facts_of(lattice).dim; }
 double layer_step(Lattice lattice) noexcept { return facts_of(lattice).layer_step; }
+std::size_t least_layers(Lattice lattice) noexcept { return facts_of(lattice).least_layers; }
 
 template <Value T, int N>
 requires DimensionBetween<N, 2, 4> Complex<N> lattice_complex(const Image<T, N>& image, Lattice lattice) {

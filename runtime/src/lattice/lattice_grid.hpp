@@ -31,7 +31,8 @@ inline void check_dimension(Lattice lattice, int dim) {
                     lattice == Lattice::fcc && dim == 4 ? ", or the lattice fcc_in_time for fcc over time" : ""));
 }
 
-/// Throws unless the axes before `layers` have equal steps, so that half a step is defined, and there are two layers.
+/// Throws unless the axes before `layers` have equal steps, so that half a step is defined, and there are layers enough
+/// for a cell.
 template <int N>
 void check_grid(const Grid<N>& grid, Lattice lattice, int layers) {
   for (int a = 0; a < layers; ++a) {
@@ -43,9 +44,11 @@ void check_grid(const Grid<N>& grid, Lattice lattice, int layers) {
                     fmt::format("lattice {}: {} has a step of {}; expected {}, that of all others", name_of(lattice),
                                 label_of_axis(axis, a), axis[i] - axis[i - 1], step));
   }
-  if (grid.axes[layers].size() < 2)
+  const std::size_t count = grid.axes[layers].size();
+  if (count < least_layers(lattice))
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("lattice {}: {} layers; expected at least 2", name_of(lattice), grid.axes[layers].size()));
+                fmt::format("lattice {}: {} layer{}; expected at least {}", name_of(lattice), count,
+                            count == 1 ? "" : "s", least_layers(lattice)));
 }
 
 /// The place of a sample in the world; the odd layers of axis `layers` are shifted along the axes before it.

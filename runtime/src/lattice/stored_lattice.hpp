@@ -31,7 +31,7 @@ void check_lattice_arguments(const Grid<N>& grid, Lattice lattice, double isoval
                              const AxisPeriods<N>& periods) {
   if (options.normals != Normals::none && options.normals != Normals::differences)
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("normals on a lattice are {}; expected gradient (differences), geometric or flat",
+                fmt::format("{} normals on a lattice; expected gradient (differences), geometric or flat",
                             name_of(options.normals)));
   const ExtractOptions with_normals = options;
   options.normals = Normals::none;

@@ -193,14 +193,18 @@ std::vector<CutMeasures> measure_cuts_of_view(const detail::SimplexView<N>& cont
 template <int N, class Real>
 std::vector<CutMeasures> measure_wrapped_cuts(const Contour<N, Real>& contour, std::span<const double> at,
                                               const WorkOptions& work) {
+  constexpr std::size_t kTogether = 16;  // cuts in memory at a time
   std::vector<CutMeasures> result;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    const double first = static_cast<double>(i) / static_cast<double>(at.size());
-    const double last = static_cast<double>(i + 1) / static_cast<double>(at.size());
-    const auto cut = slice(contour, Hyperplane<N>::across(N - 1, at[i]),
-                           {work.threads, detail::part_of(work.progress, first, last)});
-    const Measures<N - 1> measures = measure(cut, {work.threads, {}});
-    result.push_back({at[i], measures.size, measures.content});
+  for (std::size_t first = 0; first < at.size(); first += kTogether) {
+    const std::size_t end = std::min(first + kTogether, at.size());
+    std::vector<Hyperplane<N>> hyperplanes;
+    for (std::size_t i = first; i < end; ++i) hyperplanes.push_back(Hyperplane<N>::across(N - 1, at[i]));
+    const auto done = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(at.size()); };
+    for (const auto& cut : slice_stack(contour, std::span<const Hyperplane<N>>(hyperplanes),
+                                       {work.threads, detail::part_of(work.progress, done(first), done(end))})) {
+      const Measures<N - 1> measures = measure(cut, {work.threads, {}});
+      result.push_back({at[result.size()], measures.size, measures.content});
+    }
   }
   return result;
 }
@@ -232,8 +236,7 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
   for (const double t : at)
     if (!std::isfinite(t))
       throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
-  if constexpr (N <= 4)
-    if (!contour.periods.empty()) return measure_wrapped_cuts(contour, at, work);
+  if (!contour.periods.empty()) return measure_wrapped_cuts(contour, at, work);
   return measure_cuts_of_view(detail::SimplexView<N>(contour), contour.direction, at, work);
 }
 

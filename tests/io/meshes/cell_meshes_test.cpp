@@ -97,6 +97,53 @@ TEST(CellMesh, AnExtensionOfOtherDataIsARemark) {
               testing::Contains(testing::HasSubstr("b.vtr holds ImageData, whose extension is .vti")));
 }
 
+TEST(CellMesh, ValuesOfWhichOneIsTakenAreARemark) {
+  TempDir dir;
+  // two arrays of one name
+  const std::string array = "<DataArray type=\"Float64\" Name=\"f\" format=\"ascii\">";
+  const std::string twice =
+      "<PointData>" + array + "0 1 2 3 4</DataArray>" + array + "4 3 2 1 0</DataArray></PointData>";
+  write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", twice));
+  const std::string expected = (dir / "a.vtu").string() + " has several arrays 'f' of points; the first is taken";
+  EXPECT_THAT(read(dir / "a.vtu").remarks, testing::ElementsAre(expected));
+  EXPECT_THAT(read(dir / "a.vtu").values, testing::ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(describe_cell_mesh(dir / "a.vtu").remarks, testing::ElementsAre(expected));
+  // two pieces with a face in common
+  const auto pieces = [](const std::string& second) {
+    const std::string all = vtu("0 0 0 1 0 0 0 1 0 0 0 1", "0 1 2 3", "4", "10", on_points("0 1 2 3"), "4 1");
+    const std::string other = vtu("1 1 1 1 0 0 0 1 0 0 0 1", "0 1 2 3", "4", "10", on_points(second), "4 1");
+    const std::size_t begin = other.find("<Piece"), end = other.find("</UnstructuredGrid>");
+    std::string both = all;
+    return both.insert(both.find("</UnstructuredGrid>"), other.substr(begin, end - begin));
+  };
+  write_file(dir / "b.vtu", pieces("4 1 2 3"));
+  EXPECT_THAT(read(dir / "b.vtu").remarks, testing::IsEmpty());
+  write_file(dir / "c.vtu", pieces("4 1 7 8"));
+  const std::string differing =
+      (dir / "c.vtu").string() +
+      ": 'f' has different values at 2 points that pieces have in common, such as 2 and 7 at (0, 1, 0); the value of "
+      "the first piece is taken";
+  EXPECT_THAT(read(dir / "c.vtu").remarks, testing::ElementsAre(differing));
+  // a later file of a series
+  EXPECT_THAT(read_cell_mesh(std::array{dir / "b.vtu", dir / "c.vtu"}).remarks, testing::ElementsAre(differing));
+}
+
+TEST(CellMesh, FilesThatAreNotReadAreErrorsThatSayWhatIs) {
+  TempDir dir;
+  write_file(dir / "b.vtu.gz", "\x1f\x8b\x08 compressed");
+  expect_error(ErrorCode::UnsupportedFormat, {"b.vtu.gz", "compressed by gzip", "gunzip"},
+               [&] { read(dir / "b.vtu.gz"); });
+  write_file(dir / "mesh.vti", vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4")));
+  expect_error(ErrorCode::UnsupportedData, {"holds a mesh", "or the extension .vtu for this mesh"},
+               [&] { read_image(dir / "mesh.vti"); });
+  write_file(dir / "flat.vti",
+             "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\" Direction=\"1 0 0 1 0 0 0 0 1\">"
+             "<Piece Extent=\"0 1 0 1 0 1\">" +
+                 on_points("0 1 2 3 4 5 6 7") + "</Piece></ImageData></VTKFile>");
+  expect_error(ErrorCode::MalformedFile, {"Direction is '1 0 0 1 0 0 0 0 1', whose determinant is 0"},
+               [&] { read_image(dir / "flat.vti"); });
+}
+
 struct WrongMesh {
   std::string bytes;
   ErrorCode code;
@@ -132,7 +179,7 @@ TEST(CellMesh, WrongNumbersAreErrorsThatNameThem) {
       {vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 " + std::string(2000, '4'))),
        ErrorCode::MalformedFile,
        {"number 4", "more than 1000 characters"}},
-      {vtu(kPoints, kCorners, "4 8", "10 10", ""), ErrorCode::VariableNotFound, {"none"}},
+      {vtu(kPoints, kCorners, "4 8", "10 10", ""), ErrorCode::UnsupportedData, {"has no arrays; expected one"}},
       {replaced("NumberOfPoints=\"5\"", "NumberOfPoints=\"-5\""), ErrorCode::MalformedFile, {"NumberOfPoints", "-5"}},
       {replaced("NumberOfPoints=\"5\"", "NumberOfPoints=\"99999999999\""), ErrorCode::TooLarge, {"99999999999 points"}},
       {replaced("NumberOfCells=\"2\"", "NumberOfCells=\"4000000000\""), ErrorCode::MalformedFile, {"4000000000"}},
@@ -377,7 +424,21 @@ TEST(CellMesh, FilesOfASeriesMustMatch) {
   write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", data));
   write_file(dir / "b.vtu", vtu(kPoints, "0 1 2 3 1 2 4 3", "4 8", "10 10", data));
   const std::vector<fs::path> both = {dir / "a.vtu", dir / "b.vtu"};
-  expect_error(ErrorCode::UnsupportedData, {"b.vtu", "other cells"}, [&] { read_cell_mesh(both); });
+  expect_error(ErrorCode::UnsupportedData,
+               {"b.vtu", "other cells than", "cell 1 (tetrahedron) has the points 1, 2, 4, 3, and 1, 2, 3, 4 there"},
+               [&] { read_cell_mesh(both); });
+  // cells have the numbers of the file: cell 0, a triangle, is left out
+  write_file(dir / "c.vtu", vtu(kPoints, "0 1 2 0 1 2 3", "3 7", "5 10", data));
+  write_file(dir / "d.vtu", vtu(kPoints, "0 1 2 0 1 2 4", "3 7", "5 10", data));
+  expect_error(ErrorCode::UnsupportedData, {"cell 1 (tetrahedron) has the points 0, 1, 2, 4, and 0, 1, 2, 3 there"},
+               [&] {
+                 read_cell_mesh(std::array{dir / "c.vtu", dir / "d.vtu"});
+               });
+  write_file(dir / "e.vtu", vtu(kPoints, "0 1 2 3 4", "5", "14", data, "5 1"));
+  write_file(dir / "f.vtu", vtu(kPoints, "0 1 2 3", "4", "10", data, "5 1"));
+  expect_error(ErrorCode::UnsupportedData, {"cell 0 is a tetrahedron, and a pyramid there"}, [&] {
+    read_cell_mesh(std::array{dir / "e.vtu", dir / "f.vtu"});
+  });
   const std::vector<fs::path> same = {dir / "a.vtu", dir / "a.vtu"};
   CellMeshOptions options;
   options.times = {1.0, 0.5};

@@ -298,6 +298,20 @@ TEST(Mesh, AttributesMayHaveNamesThatFormatsUseThemselves) {
   expect_same(written_and_read(contour, "a.vtkhdf"), contour);
 }
 
+TEST(Mesh, NamesThatDifferInControlCharactersStayApartInPly) {
+  TempDir dir;
+  Mesh mesh = random_mesh(2, 3, 3, 1, 1);
+  mesh.vertex_attributes = {
+      {"a\tb", "", 1, {1, 2, 3}}, {"a b", "", 1, {4, 5, 6}}, {"a\nb", "", 1, {7, 8, 9}}, {"c\td", "", 1, {1, 1, 1}}};
+  write_mesh(mesh, dir / "a.ply");
+  const std::vector<Attribute> read = read_mesh(dir / "a.ply").vertex_attributes;
+  ASSERT_EQ(read.size(), 4U);
+  EXPECT_EQ(read[0].name, "a b_2");
+  EXPECT_EQ(read[1].name, "a b");
+  EXPECT_EQ(read[2].name, "a b_3");
+  EXPECT_EQ(read[3].name, "c d");
+}
+
 TEST(Mesh, TetrahedraInSpaceKeepATimeAsAnAttribute) {
   Mesh mesh = random_mesh(3, 3, 4, 1, 1);
   mesh.vertex_attributes = {{"t", "s", 1, {1, 2, 3, 4}}};

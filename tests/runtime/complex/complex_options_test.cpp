@@ -495,7 +495,7 @@ TEST(ComplexOptions, OptionsWithoutMeaningOnAComplexAreErrors) {
     o.ambiguity = Ambiguity::custom;
     o.estimator.choose = [](const AmbiguousFace&) { return tile::Choice::low; };
   });
-  refuse(complex, "normals are sobel; expected gradient", [](ExtractOptions& o) { o.normals = Normals::sobel; });
+  refuse(complex, "sobel normals; expected gradient", [](ExtractOptions& o) { o.normals = Normals::sobel; });
 }
 
 }  // namespace

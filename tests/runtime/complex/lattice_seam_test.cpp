@@ -304,6 +304,47 @@ TEST(LatticeSeam, CutsAtTimesAreTheContoursOfFccWithItsPeriods) {
     }
 }
 
+TEST(LatticeSeam, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
+  const auto test = []<int N>(Lattice lattice, const std::array<std::size_t, N>& sizes) {
+    SCOPED_TRACE(std::string(name_of(lattice)));
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    for (int axis = 0; axis < N; ++axis) {
+      const auto from = [&](double start) {
+        const auto image = sampled_on_lattice<N>(lattice, grid_of_torus<N>(sizes), [&](auto x, const auto&, const auto&) {
+          x[axis] += start;
+          double sum = 0.4 * std::cos(kTurn * (x[0] - x[N - 1]));
+          for (int a = 0; a < N; ++a) sum += (0.5 + 0.1 * a) * std::sin(kTurn * x[a] + a);
+          return sum;
+        });
+        return extract_lattice<double>(image.view(), lattice, 0.05, {}, periods_along<N>((1u << N) - 1));
+      };
+      const auto contour = from(0.0), other = from(0.5);
+      for (const double at : {0.0, 0.02, 0.07, 0.13, 0.95}) {
+        const auto cut = slice(contour, Hyperplane<N>::across(axis, at));
+        const auto expected = slice(other, Hyperplane<N>::across(axis, at - 0.5));
+        const MeshReport report = expect_oriented_manifold(cut);
+        EXPECT_GT(report.simplices, 0u);
+        EXPECT_EQ(report.boundary_simplices, 0u) << axis << ", " << at;
+        EXPECT_EQ(report.euler, check(expected).euler);
+        // in 4D, cells may be divided in the order of the samples
+        EXPECT_NEAR(measure(cut).size, measure(expected).size, N == 3 ? 1e-9 : 0.005 * measure(expected).size)
+            << axis << ", " << at;
+        const auto further = slice(contour, Hyperplane<N>::across(axis, at + 1.0));
+        EXPECT_NEAR(measure(further).size, measure(cut).size, 1e-9);
+      }
+      if (axis + 1 < N) continue;
+      const auto ends = measure_cuts(contour, {0.0, 1.0, -1.0});
+      EXPECT_GT(ends[0].size, 0.0);
+      EXPECT_EQ(ends[0].size, ends[1].size);
+      EXPECT_EQ(ends[0].size, ends[2].size);
+    }
+  };
+  test.operator()<3>(Lattice::fcc, {8, 8, 16});
+  test.operator()<3>(Lattice::bcc, {8, 8, 16});
+  test.operator()<4>(Lattice::d4, {8, 8, 8, 8});
+  test.operator()<4>(Lattice::fcc_in_time, {8, 8, 8, 8});
+}
+
 TEST(LatticeSeam, RulesByTheDataGiveManifolds) {
   for_each_noise([]<int N>(Lattice lattice, const OwnedImage<double, N>& image) {
     for (const Ambiguity ambiguity : kAllRules)

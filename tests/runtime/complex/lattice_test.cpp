@@ -5,12 +5,17 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <random>
 #include <string>
 #include <vector>
@@ -332,9 +337,39 @@ TEST(Lattice, BadGridsAreRefused) {
                [&] { (void)lattice_complex(image.view(), Lattice::fcc); });
   ExtractOptions options;
   options.normals = Normals::sobel;
-  expect_error(ErrorCode::InvalidArgument, "normals on a lattice are sobel; expected gradient",
+  expect_error(ErrorCode::InvalidArgument, "sobel normals on a lattice; expected gradient",
                [&] { (void)extract_lattice(image.view(), Lattice::fcc, 0.5, options); });
   EXPECT_EQ(name_of(Lattice::bcc), "bcc");
+}
+
+/// Expects cells in an image of the least layers, and an error with one layer less.
+template <int N>
+void expect_least_layers(Lattice lattice) {
+  SCOPED_TRACE(name_of(lattice));
+  for (const std::size_t layers : {least_layers(lattice), least_layers(lattice) - 1}) {
+    OwnedImage<double, N> image;
+    std::array<std::size_t, N> sizes;
+    sizes.fill(3);
+    sizes[N - (lattice == Lattice::fcc_in_time ? 2 : 1)] = layers;
+    image.grid = Grid<N>::unit(sizes);
+    image.values.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{1}, std::multiplies<>()));
+    if (layers == least_layers(lattice)) {
+      EXPECT_GT(lattice_complex(image.view(), lattice).cell_count(), 0U);
+      continue;
+    }
+    const std::string expected = fmt::format("lattice {}: {} layer{}; expected at least {}", name_of(lattice), layers,
+                                             layers == 1 ? "" : "s", layers + 1);
+    expect_error(ErrorCode::InvalidArgument, expected, [&] { (void)lattice_complex(image.view(), lattice); });
+    expect_error(ErrorCode::InvalidArgument, expected, [&] { (void)extract_lattice(image.view(), lattice, 0.5); });
+  }
+}
+
+TEST(Lattice, TooFewLayersForACellAreRefused) {
+  expect_least_layers<2>(Lattice::triangular);
+  expect_least_layers<3>(Lattice::fcc);
+  expect_least_layers<3>(Lattice::bcc);
+  expect_least_layers<4>(Lattice::d4);
+  expect_least_layers<4>(Lattice::fcc_in_time);
 }
 
 }  // namespace

@@ -227,9 +227,10 @@ TEST(Polygons, ErrorsNameTheCellAndWhatWasExpected) {
   expect_refusal("cell 0: a polygon of 65 corners; expected 3 to 64", many);
   many.resize(33);
   const Complex<2> complex(std::vector<std::array<double, 2>>(33), CellLists{{CellType::polygon}, many, {33}});
-  expect_error(ErrorCode::InvalidArgument, "a polygon of 33 corners over time; expected at most 32", [&] {
-    (void)in_time<2>(complex, std::vector<double>{0, 1}, std::vector<double>(66));
-  });
+  expect_error(ErrorCode::InvalidArgument,
+               "a polygon of 33 corners over time, with the points 0, 1, 2 and further ones; expected at most 32", [&] {
+                 (void)in_time<2>(complex, std::vector<double>{0, 1}, std::vector<double>(66));
+               });
 }
 
 }  // namespace

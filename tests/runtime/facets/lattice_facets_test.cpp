@@ -308,7 +308,7 @@ TEST(LatticeFacets, DoNotDependOnThreadsAndRefuseBadArguments) {
   expect_refused("the period of axis 0 (x) is 0.5; expected 1", Lattice::fcc, {}, {0.5, 0.0, 0.0});
   ExtractOptions normals;
   normals.normals = Normals::sobel;
-  expect_refused("normals on a lattice are sobel", Lattice::fcc, normals, {});
+  expect_refused("sobel normals on a lattice", Lattice::fcc, normals, {});
   // chords of polygons in cells whose common faces are not known
   expect_error(ErrorCode::UnsupportedData, "polygons in the cells of a mesh or lattice", [&] {
     (void)triangulate(extract_facets<double>(image.view(), Lattice::fcc, 0.5), PolygonTriangulation::fan);

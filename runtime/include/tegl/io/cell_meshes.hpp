@@ -39,7 +39,7 @@ struct CellMesh {
   std::vector<double> values = {};                  ///< max(1, #T) x #P; NaN: missing
   std::string variable = {};                        ///< name of the values
   std::vector<std::string> axis_names = {};         ///< of the coordinates: x, y, z, or as in the table
-  std::vector<std::string> remarks = {};            ///< cells that were left out; an extension of other data
+  std::vector<std::string> remarks = {};            ///< cells left out, values of which one is taken, extensions
   std::vector<std::filesystem::path> files = {};    ///< in the order of the times
 };
 
@@ -112,7 +112,7 @@ struct CellMeshInfo {
   std::vector<std::array<double, 2>> bounds = {};                 ///< of the points, by axis
   std::vector<CellMeshArray> arrays = {};                         ///< of points, then of cells
   std::vector<double> times = {};                                 ///< of a .pvd file
-  std::vector<std::string> remarks = {};                          ///< an extension of other data
+  std::vector<std::string> remarks = {};                          ///< an extension of other data, arrays of one name
 };
 
 /// Describes a file; of a .pvd file, its first one. Reads all its arrays. Errors: those of read_cell_mesh.
