@@ -592,6 +592,11 @@ def test_longitudes_of_curved_grids_are_continued_across_180_degrees():
             assert line.measure().size == pytest.approx(350 if periodic is None else 360)
             assert line.periods.tolist() == ([] if periodic is None else [[0, 360]])
         assert np.array_equal(lon, given), "the caller's array stays as it is"
+    grid, points = tegl.CurvedGrid({0: lat, 1: given}), np.stack([lat, given], axis=-1)
+    around = tegl.contour(lat - 25, -3.0, curved={0: lat, 1: true}, periodic="lon", **names)
+    for curved in (grid, grid, points, {0: lat.astype(np.float32), 1: given.astype(np.float32)}):
+        assert_same(tegl.contour(lat - 25, -3.0, curved=curved, periodic="lon", **names), around)
+    assert np.array_equal(grid.coordinates[1], given) and np.array_equal(points[..., 1], given)
     land = np.zeros(lat.shape, bool)
     land[:, 0] = land[2, 3:28] = True
     masked = {0: np.where(land, np.nan, lat), 1: np.where(land, np.nan, (true + 180) % 360 - 180)}
