@@ -171,8 +171,8 @@ void add_several(Subject<T>& subject, std::vector<Operation>& list) {
                     const Incidence<4> incidence(subject.contour, subject.work_options());
                     return counted(incidence.simplex_count(), "tetrahedra");
                   }});
-  list.push_back({"all of these", [all] { return all(); }});
-  list.push_back({"all of these, one `Incidence`",
+  list.push_back({"`label_components`, `check`, `components`, `measure`, `track`", [all] { return all(); }});
+  list.push_back({"the same with one `Incidence`",
                   [&, all] { return all(Incidence<4>(subject.contour, subject.work_options())); }});
 }
 

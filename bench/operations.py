@@ -50,7 +50,7 @@ def parse(text: str) -> list[dict]:
             files.append({"file": heading[1], "isovalue": float(heading[2]), "operations": {}})
         elif line.endswith(" MB") and "tetrahedra, " in line:
             files[-1]["contour"] = line
-        elif line.startswith("| `") or line.startswith("| all of these"):
+        elif line.startswith(("| `", "| the same ")):
             name, time, worked, memory, result = (cell.strip() for cell in line.strip("|").split(" | "))
             files[-1]["operations"][name] = {"ms": number(time), "processor_ms": number(worked), "mb": number(memory),
                                              "result": result}
@@ -95,8 +95,8 @@ def parse_arguments():
     parser.add_argument("--build", type=pathlib.Path, default=machine.ROOT / "build/release")
     parser.add_argument("--repetitions", type=int, default=5, metavar="N", help="of each operation in a turn (default: 5)")
     parser.add_argument("--turns", type=int, default=2, metavar="N", help="(default: 2)")
-    parser.add_argument("--only", default="", metavar="TEXT", help="only operations whose name has TEXT")
-    parser.add_argument("--kept", type=pathlib.Path, default=KEPT, help="the figures (default: bench/results/operations.json)")
+    parser.add_argument("--only", default="", metavar="TEXT", help="only operations whose name has TEXT; without --kept, none is kept")
+    parser.add_argument("--kept", type=pathlib.Path, help="the figures (default: bench/results/operations.json)")
     parser.add_argument("files", nargs="+", metavar="FILE ISO", help="4D images, each with an isovalue")
     options = parser.parse_args()
     if len(options.files) % 2 != 0 or options.repetitions < 1 or options.turns < 1:
@@ -107,7 +107,7 @@ def parse_arguments():
 
 def main() -> None:
     options = parse_arguments()
-    os.environ["GLIBC_TUNABLES"] = "glibc.malloc.hugetlb=1"  # as in the side-by-side comparison
+    os.environ.setdefault("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1")  # as in the side-by-side comparison
     result = {"machine": machine.describe(options.build), "files": []}
     for turn in range(options.turns):
         for threads in THREADS:
@@ -119,8 +119,11 @@ def main() -> None:
     for file in result["files"]:
         file["verdicts"] = verdicts(file)
     print("\n".join(["", *machine.lines(result["machine"]), "", *tables.operations(result)]))
-    options.kept.parent.mkdir(parents=True, exist_ok=True)
-    options.kept.write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+    kept = options.kept or (None if options.only else KEPT)
+    if kept is None:
+        return
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    kept.write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
 
 
 if __name__ == "__main__":

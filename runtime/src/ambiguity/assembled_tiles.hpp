@@ -30,7 +30,8 @@ class AssembledTiles {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
 
   /// Appends a tile with its filling, unless more than `most` words would be kept. If so, it is full. `filling`:
-  /// combined from cubes. kAtOnce of its simplices are read even if it has fewer.
+  /// combined from cubes. kAtOnce of its simplices are read even if it has fewer, so it must not be a view of the
+  /// table's.
   void add(const ResolvedTile& tile, const ResolvedView& filling, std::size_t most) {
     const std::size_t first = size_, simplices = first + kHead + filling.own_vertices;
     const std::size_t end = simplices + (filling.simplex_count + 1) / 2;

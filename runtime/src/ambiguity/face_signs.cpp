@@ -136,8 +136,9 @@ class ShortDifferences {
     const HWY_NAMESPACE::D d;
     const hn::Rebind<float, HWY_NAMESPACE::D> narrow;
     const auto minus = hn::Set(d, of == 0.0 ? 0.0 : -of);  // adding 0 makes 0 of -0
+    const std::size_t last = std::min(block.kSamples, block.tiles + 16);  // with the rest of the last register
     for (std::size_t r = 0; r < kRows; ++r)
-      for (std::size_t i = 0; i < block.kSamples; i += hn::Lanes(d))
+      for (std::size_t i = 0; i < last; i += hn::Lanes(d))
         hn::StoreU(hn::DemoteTo(narrow, hn::Add(hn::LoadU(d, block.samples[r].data() + i), minus)), narrow,
                    rows_[r].data() + i);
   }

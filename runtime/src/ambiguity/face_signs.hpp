@@ -27,7 +27,7 @@ template <int N>
 struct FaceBlock {
   static constexpr std::size_t kRows = std::size_t{1} << (N - 1);
   static constexpr std::size_t kSamples = kWordBits + 1;
-  static constexpr std::size_t kPitch = 80;  ///< entries past kSamples are read but not used
+  static constexpr std::size_t kPitch = 80;  ///< some entries past the samples are read but not used
 
   /// Rows of samples around the tiles. Bit a - 1 of a row's number is its side along axis a.
   alignas(64) std::array<std::array<double, kPitch>, kRows> samples;

@@ -445,7 +445,9 @@ void expect_folds(const std::array<std::size_t, N>& sizes, const std::array<unsi
     EXPECT_EQ(find_folds<N>(grid, curved, {threads, {}}).first, expected.first);
     EXPECT_EQ(find_folds<N>(grid, by_points(curved), {threads, {}}), find_folds<N>(grid, curved));
   }
-  if (disorder > 0.4) EXPECT_GT(expected.cells, 0U);
+  if (disorder > 0.4) {
+    EXPECT_GT(expected.cells, 0U);
+  }
 }
 
 TEST(CurvedPoints, FoldsAreThoseOfTheCornersOneByOne) {
