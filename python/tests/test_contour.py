@@ -698,9 +698,10 @@ def test_bad_curved_points_are_errors():
             tegl.CurvedGrid(scalar)
     with pytest.raises(TypeError, match="curved are of type <U1; expected real numbers"):
         tegl.contour(values, 0.5, curved=np.array([["a"]]))
-    for time_axis in (0, -1):
+    for time_axis, order in ((0, "C"), (-1, "F")):
+        x = np.array(points[..., 0], order=order)  # read in place
         with pytest.raises(ValueError) as raised:
-            tegl.contour(values, 0.5, curved={0: points[..., 0], 1: points[..., 0]}, time_axis=time_axis)
+            tegl.contour(values, 0.5, curved={0: x, 1: x}, time_axis=time_axis)
         assert str(raised.value) == ("the curved coordinates of axis 0 and of axis 1 are the same numbers in memory; expected "
                                      "coordinates of its own for each axis")
     points[4, 4, :, 1] = np.nan
