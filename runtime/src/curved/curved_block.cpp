@@ -180,7 +180,7 @@ void ends_of_doubles(const double* points, std::size_t dim, const IndexSteps& st
 }
 
 /// Reads the coordinates of samples, side by side, in the order of their axes. Reads no other numbers, as the memory
-/// may end behind them, except for three that are `Aligned` as four, in the same cache line.
+/// may end behind them, and what is between samples may be NaN. Three that are `Aligned` as four are in one cache line.
 template <std::size_t Columns, bool Descends, bool Aligned, class T>
 struct ColumnReader {
   static constexpr std::size_t kWidth = Columns == 2 ? 2 : 4;
@@ -192,7 +192,7 @@ struct ColumnReader {
   HWY_INLINE hn::Vec<Tag> operator()(const T* from, std::size_t c) const {
     const StoredTag stored;
     if constexpr (Columns == 3 && kIsOneVector) {
-      if constexpr (Aligned && !Descends) return longer(hn::LoadU(stored, from));
+      if constexpr (Aligned && !Descends) return longer(all(from));
       constexpr LaneIndex kLast = Aligned ? 2 : 3;
       alignas(32) constexpr std::array<LaneIndex, kWidth> kOrder = {Descends ? kLast : 0, 1, Descends ? 0 : kLast, 1};
       return longer(hn::TableLookupLanes(all(from), hn::SetTableIndices(stored, kOrder.data())));
@@ -216,13 +216,14 @@ struct ColumnReader {
     else
       return hn::PromoteTo(Tag(), v);
   }
-  /// Three coordinates: the last one is the last lane, unless they are aligned.
+  /// Three coordinates: the last one is the last lane, unless they are aligned: then that lane is 0.
   static HWY_INLINE hn::Vec<StoredTag> all(const T* from) {
+    const StoredTag stored;
 #if HWY_TARGET != HWY_SCALAR
     const hn::Half<StoredTag> half;
-    if constexpr (!Aligned) return hn::Combine(StoredTag(), hn::LoadU(half, from + 1), hn::LoadU(half, from));
+    if constexpr (!Aligned) return hn::Combine(stored, hn::LoadU(half, from + 1), hn::LoadU(half, from));
 #endif
-    return hn::LoadU(StoredTag(), from);
+    return hn::MaskedLoad(hn::FirstN(stored, Columns), stored, from);
   }
   using LaneIndex = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
 };

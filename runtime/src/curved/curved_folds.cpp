@@ -148,14 +148,21 @@ namespace {
 class DoubleRows {
  public:
   explicit DoubleRows(std::size_t count) : copies_(CellRow::kMostCorners * count), count_(count) {}
-  /// The coordinates one[first], one[first + step], ... The pointer is valid until as many more rows are returned as
-  /// cells have corners.
+  /// Starts a row of cells, which may ask for fewer rows of coordinates than kMostCorners.
+  void start() noexcept { ++current_; }
+  /// The coordinates one[first], one[first + step], ... The pointer is valid until the next row of cells starts.
   const double* row(const CurvedAxis& one, std::size_t first, std::size_t step) {
     if (step == 1 && !one.values.empty()) return one.values.data() + first;
     const auto found = std::find(first_.begin(), first_.end(), first);
-    if (found != first_.end()) return copies_.data() + count_ * static_cast<std::size_t>(found - first_.begin());
+    if (found != first_.end()) {
+      const auto slot = static_cast<std::size_t>(found - first_.begin());
+      used_[slot] = current_;
+      return copies_.data() + count_ * slot;
+    }
+    while (used_[next_] == current_) next_ = (next_ + 1) % first_.size();  // the oldest one may be needed again
     double* const to = copies_.data() + count_ * next_;
     first_[next_] = first;
+    used_[next_] = current_;
     next_ = (next_ + 1) % first_.size();
     const auto copy = [&](const auto* from, std::size_t pitch) {
       for (std::size_t i = 0; i < count_; ++i, from += step * pitch) to[i] = static_cast<double>(*from);
@@ -173,8 +180,10 @@ class DoubleRows {
  private:
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> first_ = std::vector<std::size_t>(CellRow::kMostCorners, kNone);  ///< of the copies
+  std::vector<std::size_t> used_ = std::vector<std::size_t>(CellRow::kMostCorners, 0);  ///< by which row of cells, last
   std::vector<double> copies_;
-  std::size_t count_;  ///< of coordinates in a row
+  std::size_t current_ = 0;  ///< number of the row of cells, from 1
+  std::size_t count_;        ///< of coordinates in a row
   std::size_t next_ = 0;
 };
 
@@ -270,6 +279,7 @@ class FoldFinder {
     for (std::size_t k = 0; k < curved_.size(); ++k) {
       const CurvedAxis& one = curved_[k];
       row.along[static_cast<std::size_t>(one.axis)] = one.along;
+      own.rows[k].start();
       for (unsigned corner = 0; corner < 1u << N; ++corner) {
         if ((corner >> axis_ & 1u) != 0) continue;
         std::size_t first = 0;

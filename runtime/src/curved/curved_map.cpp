@@ -15,6 +15,15 @@
 
 namespace tegl::detail {
 
+/// Whether both are stored by points, and have the same number in memory at each sample. The same numbers along other
+/// axes are other coordinates.
+static bool are_same_numbers(const CurvedAxis& one, const CurvedAxis& other) {
+  return one.values.empty() && other.values.empty() && one.along == other.along &&
+         one.points.pitch() == other.points.pitch() &&
+         (one.points.floats() != nullptr) == (other.points.floats() != nullptr) &&
+         first_address(one) == first_address(other);
+}
+
 template <int N>
 void require_curved(const Grid<N>& grid, std::span<const CurvedAxis> curved) {
   const auto fail = [](const std::string& text) { throw Error(ErrorCode::InvalidGrid, text); };
@@ -41,11 +50,11 @@ void require_curved(const Grid<N>& grid, std::span<const CurvedAxis> curved) {
       fail(fmt::format("column {} of the points for axis {}; expected a number below {}", one.column, one.axis,
                        one.points.columns()));
     for (const CurvedAxis* other = curved.data(); other != &one; ++other)
-      if (other->values.empty() && other->points.is_same_memory(one.points) && other->column == one.column)
+      if (are_same_numbers(*other, one))
         fail(
-            fmt::format("the axes {} and {} have the same curved coordinates, column {} of the points; expected "
+            fmt::format("the curved coordinates of axis {} and of axis {} are the same numbers in memory; expected "
                         "coordinates of its own for each axis",
-                        other->axis, one.axis, one.column));
+                        other->axis, one.axis));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,12 @@ namespace tegl::detail {
 /// Throws InvalidGrid unless the curved axes fit the grid.
 template <int N>
 void require_curved(const Grid<N>& grid, std::span<const CurvedAxis> curved);
+
+/// The address of the first coordinate of an axis that is stored by points.
+[[nodiscard]] inline std::uintptr_t first_address(const CurvedAxis& one) noexcept {
+  return one.points.floats() != nullptr ? reinterpret_cast<std::uintptr_t>(one.points.floats() + one.column)
+                                        : reinterpret_cast<std::uintptr_t>(one.points.doubles() + one.column);
+}
 
 template <int N>
 class CurvedMap {

@@ -59,24 +59,45 @@ void require_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved, std:
   }
 }
 
-/// Continues coordinates that are stored by points across a seam; those that are stored together, together.
+/// Continues the coordinates of some axes, whose numbers are side by side in memory, across a seam.
+template <int N>
+void continue_together(const CurvedSeam<N>& seam, const Grid<N>& grid, std::span<CurvedAxis* const> axes) {
+  const CurvedAxis& first = *axes.front();
+  std::array<double, CurvedPoints::kMostColumns> added{};
+  for (std::size_t column = 0; column < axes.size(); ++column) added[column] = seam.vector[axes[column]->axis];
+  const std::size_t row = size_along(first, grid, 0, seam.axis), block = row * grid.axes[seam.axis].size();
+  const auto in_place = [&](const auto* numbers) {
+    return CurvedPoints::in_place(numbers + first.column, first.size(), axes.size(), first.points.pitch());
+  };
+  const CurvedPoints points =
+      first.points.floats() != nullptr ? in_place(first.points.floats()) : in_place(first.points.doubles());
+  const CurvedPoints continued = points.continued(row, block, added);
+  for (std::size_t column = 0; column < axes.size(); ++column) {
+    axes[column]->points = continued;
+    axes[column]->column = static_cast<unsigned>(column);
+  }
+}
+
+/// Continues coordinates that are stored by points across a seam; those that are side by side in memory remain so,
+/// whether they are columns of one object or each is an object of its own.
 template <int N>
 void continue_points(const CurvedSeam<N>& seam, LongerCurved<N>& longer) {
-  std::vector<std::pair<CurvedPoints, CurvedPoints>> continued;
-  for (CurvedAxis& one : longer.curved) {
-    if ((one.along >> seam.axis & 1u) == 0 || !one.values.empty()) continue;
-    auto found = std::find_if(continued.begin(), continued.end(),
-                              [&](const auto& pair) { return pair.first.is_same_memory(one.points); });
-    if (found == continued.end()) {
-      std::array<double, CurvedPoints::kMostColumns> added{};
-      for (const CurvedAxis& other : longer.curved)
-        if (other.values.empty() && other.points.is_same_memory(one.points))
-          added[other.column] = seam.vector[other.axis];
-      const std::size_t row = size_along(one, longer.grid, 0, seam.axis);
-      const std::size_t block = row * longer.grid.axes[seam.axis].size();
-      found = continued.insert(found, {one.points, one.points.continued(row, block, added)});
-    }
-    one.points = found->second;
+  const auto are_floats = [](const CurvedAxis* one) { return one->points.floats() != nullptr; };
+  std::vector<CurvedAxis*> axes;
+  for (CurvedAxis& one : longer.curved)
+    if ((one.along >> seam.axis & 1u) != 0 && one.values.empty()) axes.push_back(&one);
+  std::sort(axes.begin(), axes.end(),
+            [](const CurvedAxis* a, const CurvedAxis* b) { return first_address(*a) < first_address(*b); });
+  for (std::size_t begin = 0, end = 0; begin < axes.size(); begin = end) {
+    const CurvedAxis* const first = axes[begin];
+    const std::size_t bytes = are_floats(first) ? sizeof(float) : sizeof(double), pitch = first->points.pitch();
+    const std::size_t most = std::min(pitch, CurvedPoints::kMostColumns);
+    const auto follows = [&](const CurvedAxis* one) {
+      return are_floats(one) == are_floats(first) && one->points.pitch() == pitch && one->along == first->along &&
+             first_address(*one) == first_address(*first) + bytes * (end - begin);
+    };
+    for (end = begin + 1; end < axes.size() && end - begin < most && follows(axes[end]);) ++end;
+    continue_together<N>(seam, longer.grid, std::span(axes).subspan(begin, end - begin));
   }
 }
 

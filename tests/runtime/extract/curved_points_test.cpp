@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include "curved/curved_block.hpp"
+#include "curved/curved_seams.hpp"
 #include "errors.hpp"
 #include "tegl/curved.hpp"
 
@@ -363,13 +365,103 @@ TEST(CurvedPoints, TwoAxesWithTheSameColumnAreErrors) {
   const OwnedImage<double, 3> image = noise<3>({9, 8, 7});
   auto curved = by_points(random_axes<3>(image.grid, {7, 7, 7}, false));
   curved[2].column = 0;
-  const std::string message = "the axes 0 and 2 have the same curved coordinates, column 0 of the points; expected";
+  const std::string message =
+      "the curved coordinates of axis 0 and of axis 2 are the same numbers in memory; expected coordinates of its own "
+      "for each axis";
   expect_error(ErrorCode::InvalidGrid, message, [&] { (void)extract_curved(image.view(), curved, 0.5); });
   expect_error(ErrorCode::InvalidGrid, message, [&] { (void)find_seams(image.grid, curved, std::array{0}); });
   // copies of the numbers are not the same memory, and flat in each cell
   auto separate = random_axes<3>(image.grid, {7, 7, 7}, false);
   separate[2].values = separate[0].values;
   EXPECT_EQ(find_folds<3>(image.grid, separate).cells, 8U * 7U * 6U);
+}
+
+TEST(CurvedPoints, OneArrayMayBeTheCoordinatesAlongTwoAxes) {
+  const OwnedImage<double, 2> image = noise<2>({31, 31});
+  std::vector<double> values(31);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = 0.1 * static_cast<double>(i * i);
+  const std::vector<CurvedAxis> separate = {{0, 1, values}, {1, 2, values}};
+  std::vector<CurvedAxis> shared = {{0, 1}, {1, 2}};
+  for (CurvedAxis& one : shared) one.points = CurvedPoints::in_place(values.data(), values.size(), 1, 1);
+  expect_the_contour_of_arrays<double>(image, shared);
+  const std::vector<CurvedSeam<2>> seams = {{0, {100.0, 0.0}}, {1, {0.0, 101.0}}};
+  const auto contour = extract_curved<double>(image.view(), shared, 0.5, {}, seams);
+  EXPECT_EQ(contour.vertices, extract_curved<double>(image.view(), separate, 0.5, {}, seams).vertices);
+}
+
+TEST(CurvedPoints, ObjectsThatBeginWithTheSameNumberContinueAcrossSeamsOneByOne) {
+  // A column of points of another pitch than the other's begins at the same number, but is another coordinate.
+  const OwnedImage<double, 2> image = noise<2>({9, 8});
+  std::vector<double> numbers(3 * 72);
+  std::mt19937 random(3);
+  for (double& x : numbers) x = drawn(random, false);
+  std::vector<CurvedAxis> curved = {{0, 3}, {1, 3}};
+  curved[0].points = CurvedPoints::in_place(numbers.data(), 72, 1, 1);
+  curved[1].points = CurvedPoints::in_place(numbers.data(), 72, 1, 3);
+  std::vector<CurvedAxis> separate = {{0, 3}, {1, 3}};
+  for (std::size_t i = 0; i < 72; ++i) {
+    separate[0].values.push_back(numbers[i]);
+    separate[1].values.push_back(numbers[3 * i]);
+  }
+  for (const std::vector<CurvedSeam<2>>& seams :
+       {std::vector<CurvedSeam<2>>{}, std::vector<CurvedSeam<2>>{{0, {1.0, 2.0}}, {1, {4.0, -3.0}}}}) {
+    const auto contour = extract_curved<double>(image.view(), curved, 0.5, {}, seams);
+    EXPECT_EQ(contour.vertices, extract_curved<double>(image.view(), separate, 0.5, {}, seams).vertices);
+  }
+}
+
+TEST(CurvedPoints, AreSideBySideBehindSeamsToo) {
+  // each coordinate as an object of its own, as Python's arrays are
+  const Grid<3> grid = Grid<3>::unit({9, 8, 7});
+  const std::vector<CurvedAxis> separate = random_axes<3>(grid, {7, 7, 7}, false);
+  for (const bool descends : {false, true}) {
+    const std::vector<double> numbers = side_by_side<double>(separate, 3, descends);
+    std::vector<CurvedAxis> curved = separate;
+    for (std::size_t c = 0; c < 3; ++c) {
+      curved[c].values.clear();
+      curved[c].points = CurvedPoints::in_place(numbers.data() + (descends ? 2 - c : c), separate[c].size(), 1, 3);
+    }
+    const std::vector<CurvedSeam<3>> seams = {{1, {1.0, 2.0, 3.0}}, {0, {0.5, 0.0, -1.0}}};
+    const auto longer = detail::longer_curved<3>(grid, curved, seams);
+    EXPECT_EQ(longer.curved, detail::longer_curved<3>(grid, separate, seams).curved);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_TRUE(longer.curved[c].points.is_same_memory(longer.curved[0].points));
+      EXPECT_EQ(longer.curved[c].column, descends ? 2 - c : c);
+    }
+  }
+}
+
+TEST(CurvedPoints, NumbersBetweenSamplesAreNotRead) {
+  // Points and their values: the contour needs no coordinate that is not known, as NaN is beside each sample.
+  const OwnedImage<double, 3> image = noise<3>({13, 9, 10});
+  const std::vector<CurvedAxis> separate = random_axes<3>(image.grid, {7, 7, 7}, true);
+  const std::size_t samples = separate[0].size();
+  const auto expected = extract_curved<double>(image.view(), separate, 0.5);
+  for (const bool descends : {false, true}) {
+    std::vector<float> numbers(4 * samples + 4, std::numeric_limits<float>::quiet_NaN());
+    float* const first = numbers.data() + (16 - reinterpret_cast<std::uintptr_t>(numbers.data()) % 16) % 16 / 4;
+    for (std::size_t i = 0; i < samples; ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        first[4 * i + (descends ? 2 - c : c)] = static_cast<float>(separate[c].values[i]);
+    std::vector<CurvedAxis> curved = separate;
+    for (std::size_t c = 0; c < 3; ++c) {
+      curved[c].values.clear();
+      curved[c].column = static_cast<unsigned>(descends ? 2 - c : c);
+      curved[c].points = CurvedPoints::in_place(static_cast<const float*>(first), samples, 3, 4);
+    }
+    detail::CurvedArrays arrays;
+    arrays.are_floats = true;
+    arrays.pitch = 4;
+    for (std::size_t c = 0; c < 3; ++c) arrays.add(curved[c].points.floats() + curved[c].column, c);
+    arrays.find_columns(3);
+    ASSERT_FALSE(arrays.may_be_in_two_lines);
+    detail::CurvedBlock::Ends ends;
+    for (std::size_t i = 0; i < ends.first.size(); ++i)
+      ends.first[i] = ends.second[i] = static_cast<std::int64_t>(4 * i);
+    detail::CurvedBlock::Points<double> out{};
+    EXPECT_TRUE(detail::interpolate(arrays, ends, ends.first.size(), ends, 0, 3, out.data()));
+    EXPECT_EQ(extract_curved<double>(image.view(), curved, 0.5).vertices, expected.vertices);
+  }
 }
 
 TEST(CurvedSeams, StraightLongitudesAreFoundIn5d) {
