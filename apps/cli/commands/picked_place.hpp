@@ -34,7 +34,7 @@ template <int N>
 
 template <int N>
 void take_report(const PickReport<N>& report, Picked& picked) {
-  picked = {.point = picked.point, .components = report.components};
+  picked.components = report.components;
   if (!report.found) return;  // an empty contour, or one of caps only
   picked.tile.assign(report.at.begin(), report.at.end());
   picked.distance = report.distance;
@@ -100,7 +100,8 @@ template <int N, class Real>
       nearest_component(contour, labels, point, steps_on_lattice<N>(grid, lattice), {threads});
   std::vector<bool> keep(labels.count);
   if (nearest.label != kNoComponent) keep[nearest.label] = true;
-  picked = {.point = picked.point, .components = labels.count, .is_in_world = grid.has_world_map()};
+  picked.components = labels.count;
+  picked.is_in_world = grid.has_world_map();
   if (nearest.label != kNoComponent) picked.distance = nearest.distance;
   return select_components(contour, labels, keep, {threads});
 }

@@ -316,8 +316,8 @@ TEST(Components, NearestToAPointIsModuloObliquePeriods) {
       double nearest = std::numeric_limits<double>::infinity();
       Index label = kNoComponent;
       for (Index v = 0; v < 4; ++v)
-        for (int i = -40; i <= 40; ++i)
-          for (int k = -40; k <= 40; ++k) {
+        for (int i = -15; i <= 15; ++i)
+          for (int k = -15; k <= 15; ++k) {
             const double x = (contour.vertices[v][0] + i + 0.9 * k - point[0]) / steps[0];
             const double y = (contour.vertices[v][1] + 0.3 * k - point[1]) / steps[1];
             if (std::hypot(x, y) >= nearest - 1e-9) continue;
