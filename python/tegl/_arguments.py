@@ -94,7 +94,8 @@ def _in_array_order(text: str, ndim: int) -> str:
 
 
 @contextlib.contextmanager
-def _array_terms(is_reversed: bool, ndim: int, about: str = "") -> typing.Iterator[None]:
+def array_terms(is_reversed: bool, ndim: int, about: str = "") -> typing.Iterator[None]:
+    """Converts the library's errors to the array's order of axes, except the name of the file `about`."""
     try:
         yield
     except ValueError as error:
@@ -125,7 +126,7 @@ class Prepared:
 
     def terms(self, about: str = "") -> contextlib.AbstractContextManager[None]:
         """Converts the library's errors to the array's order of axes, except the name of the file `about`."""
-        return _array_terms(self.is_reversed, self.ndim, about)
+        return array_terms(self.is_reversed, self.ndim, about)
 
     def turned(self, per_axis: Sequence) -> list:
         """Numbers of the array's axes, in the library's order."""

@@ -525,8 +525,9 @@ class Components(Sequence[Component]):
         component's contour. It works for all contours, also of lattices and meshes. ValueError for an empty contour.
         """
         place = _arguments.as_numbers("point", point, "its coordinates along the contour's axes")
-        found = _tegl.nearest_component(self._contour._core, self._labels, self._contour._listed(place),
-                                        self._contour._of_axes("steps", steps), progress)
+        at, divisors = self._contour._listed(place), self._contour._of_axes("steps", steps)
+        with _arguments.array_terms(self._contour._is_reversed, self._contour.ndim):
+            found = _tegl.nearest_component(self._contour._core, self._labels, at, divisors, progress)
         if found is None:
             raise ValueError("the component nearest to a point: the contour is empty")
         return found[0]

@@ -635,8 +635,8 @@ def test_the_nearest_component_of_any_contour(moving_balls):
     assert [both.nearest((1, 1.9), steps=steps) for steps in (1, (9, 1))] == [0, 1]
     with pytest.raises(ValueError, match="3 numbers; expected one for each of 2 axes"):
         both.nearest((1, 2, 3))
-    with pytest.raises(ValueError, match="steps above 0"):
-        both.nearest((1, 2), steps=0)
+    with pytest.raises(ValueError, match=r"nearest to \(1, 2\), with steps of \(3, 0\); .*steps above 0"):
+        both.nearest((1, 2), steps=(3, 0))
     with pytest.raises(ValueError, match="the contour is empty"):
         tegl.contour(moving_balls[0], 99.0, allow_empty=True).components().nearest((0, 0, 0))
 

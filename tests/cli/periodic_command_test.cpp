@@ -393,6 +393,10 @@ TEST_F(PeriodicCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
     for (const double value : mesh.vertex_attributes[0].values) at_level += std::abs(value - 1.6) < 1e-5 ? 1 : 0;
     EXPECT_GE(at_level, open["vertices"].get<std::size_t>() / 2) << more;
   }
+  // --pick on the lattice that the file names
+  const nlohmann::json picked = contour({"--iso", "0.2", "--periodic", "x,y", "--pick", "1.3,0.5,0.5"});
+  EXPECT_EQ(picked["components"], 1);
+  EXPECT_LT(picked["pick"]["distance"], 1.0);
   sample("fcc", "13,12,12", "x", path("shorter.nrrd"));
   const auto refused = [&](std::vector<std::string> arguments, const char* message) {
     const RunResult run = run_tegl(arguments);
@@ -400,6 +404,8 @@ TEST_F(PeriodicCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
     EXPECT_THAT(run.err, HasSubstr(message));
   };
   const std::string ply = path("a.ply");
+  refused({"contour", file, "--iso", "0.2", "-o", ply, "--periodic", "x", "--lattice", "cubic", "--pick", "0,0,0"},
+          "--periodic x with --pick");
   refused({"contour", file, "--iso", "0.2", "-o", ply, "--attribute", path("shorter.nrrd")},
           "expected the same lattice, numbers of samples and coordinates");
   refused({"contour", file_, "--iso", "0", "-o", ply, "--attribute", file},

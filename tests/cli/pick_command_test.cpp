@@ -114,9 +114,18 @@ TEST_F(PickOnALattice, HasAttributesAndNormals) {
       pick("9,9.5,9.5", {"--lattice", "fcc", "--normals", "gradient", "--attribute", file(), "--json"});
   ASSERT_EQ(left.exit, 0) << left.err;
   EXPECT_EQ(left.json()["components"], 1);
-  const nlohmann::json info = run_tegl({"info", path("one.ply"), "--json"}).json();
-  EXPECT_EQ(info["vertices"], left.json()["vertices"]);
-  EXPECT_THAT(info.dump(), HasSubstr("normals"));
+  const Mesh mesh = read_mesh(path("one.ply"));
+  const std::size_t vertices = left.json()["vertices"];
+  EXPECT_EQ(mesh.coordinates.size(), 3 * vertices);
+  ASSERT_EQ(mesh.normals.size(), 3 * vertices);
+  ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+  const Attribute& values = mesh.vertex_attributes[0];
+  EXPECT_EQ(values.name, "balls");
+  ASSERT_EQ(values.values.size(), vertices);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    EXPECT_NEAR(values.values[v], 0.0, 1e-5);  // the image itself, at its isovalue
+    EXPECT_NEAR(std::hypot(mesh.normals[3 * v], mesh.normals[3 * v + 1], mesh.normals[3 * v + 2]), 1.0, 1e-5);
+  }
 }
 
 TEST_F(PickOnALattice, IsNearestModuloThePeriod) {
@@ -127,6 +136,40 @@ TEST_F(PickOnALattice, IsNearestModuloThePeriod) {
   ASSERT_EQ(right.exit, 0) << right.err;
   EXPECT_LT(left.json()["simplices"], right.json()["simplices"]);
   EXPECT_EQ(left.json()["pick"]["point"], nlohmann::json({41.0, 9.5, 9.5}));
+  // other axes have ends
+  const RunResult outside = pick("41,90,9.5", periodic);
+  EXPECT_EQ(outside.exit, 2);
+  EXPECT_THAT(outside.err, HasSubstr("(41, 90, 9.5) is not in the image; expected one from (-inf, 0, 0) to "
+                                     "(inf, 19.5, 19)"));
+}
+
+TEST_F(PickOnALattice, SaysTheUnitOfTheDistance) {
+  EXPECT_THAT(pick("9,9.5,9.5", {"--lattice", "fcc"}).out, HasSubstr(" steps away\n"));
+  const std::string mapped = write(
+      "mapped.nrrd",
+      nrrd_bytes(sample({12, 12, 12},
+                        [](const std::vector<double>& x) { return 3.0 - std::hypot(x[0] - 6, x[1] - 6, x[2] - 6); }),
+                 "space dimension: 3\nspace directions: (0,2,0) (2,0,0) (0,0,2)\n"));
+  const RunResult run =
+      run_tegl({"contour", mapped, "--iso", "0", "--lattice", "fcc", "--pick", "12,12,12", "-o", path("one.ply")});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr(" away in the world\n"));
+}
+
+TEST_F(Pick, OfAnEmptyContourIsNone) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--lattice", "fcc"}}) {
+    std::vector<std::string> arguments{"contour",   file(), "--iso",          "99",           "--pick",
+                                       "9,9.5,9.5", "-o",   path("none.ply"), "--allow-empty"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult run = run_tegl(arguments);
+    ASSERT_EQ(run.exit, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("(9, 9.5, 9.5): no component, as the contour is empty"));
+    arguments.emplace_back("--json");
+    const nlohmann::json picked = run_tegl(arguments).json()["pick"];
+    EXPECT_TRUE(picked["distance"].is_null());
+    EXPECT_TRUE(picked["tile"].is_null());
+    EXPECT_EQ(picked["components"], 0);
+  }
 }
 
 TEST_F(PickOnALattice, OfAFileIsMeasuredInItsSteps) {

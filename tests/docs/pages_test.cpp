@@ -358,7 +358,8 @@ TEST(Components, TheNearestToAPoint) {
   // [nearest_component]
   const tegl::ComponentLabels labels = tegl::label_components(surface);
   std::vector<bool> keep(labels.count);
-  keep.at(tegl::nearest_component(surface, labels, point).label) = true;
+  const tegl::NearestComponent found = tegl::nearest_component(surface, labels, point);
+  if (found.label != tegl::kNoComponent) keep[found.label] = true;  // false for all if the contour is empty
   const tegl::Contour<3> nearest = tegl::select_components(surface, labels, keep);
   // [/nearest_component]
   EXPECT_EQ(nearest.simplices.size(), surface.simplices.size());

@@ -125,7 +125,7 @@ class ContourCommand final : public Command {
                                                            const std::vector<double>& point) const {
     std::vector<ContourResult> results(isovalues.size());
     for (std::size_t i = 0; i < results.size(); ++i) {
-      if (!point.empty()) results[i].picked = Picked{point, {}, 0, 0, 0};
+      if (!point.empty()) results[i].picked = Picked{.point = point};
       results[i].output = outputs[i];
       results[i].isovalue = isovalues[i].value;
       results[i].compression = given_.compress.compression();

@@ -121,7 +121,9 @@ void ContourArguments::require_tiling() const {
     if (is_streamed() && extraction.tiling().lattice) return;
     if (knows_lattices(with) && extraction.tiling().lattice) return;
     if (with == std::string_view(kFacets) && extraction.tiling().division) return;
-    is_streamed() || facets ? extraction.refuse_other_tiling(with) : extraction.refuse_tiling(with);
+    // the file may name a lattice, for which --pick knows periodic axes: refuse_tiling_of_file decides
+    const bool may_be_periodic = is_streamed() || facets || with == std::string_view(kPick);
+    may_be_periodic ? extraction.refuse_other_tiling(with) : extraction.refuse_tiling(with);
   });
   if (attributes.wanted() && extraction.tiling().of_cells) extraction.refuse_tiling("--attribute");
 }
@@ -182,6 +184,7 @@ void ContourArguments::refuse_tiling_of_file(const ImageInfo& info, const std::s
     extraction.refuse_cells(info.samples_are_cells, file, with);
     if (!is_streamed() && !knows_lattices(with)) extraction.refuse_lattice(info, file, with);
   });
+  if (picks() && !extraction.has_lattice(info)) extraction.refuse_periodic_with(kPick);
   if (attributes.wanted()) extraction.refuse_cells(info.samples_are_cells, file, "--attribute");
   if (!positions.are_linear()) extraction.refuse_lattice(info, file, "--positions");
 }

@@ -87,8 +87,14 @@ void use_facets(const OwnedImage<T, N>& image, const FacetsWork& work, const std
       return extract_facets_several<Real>(image.view(), *work.lattice, isovalues, use_of_cells, options, periods);
     if (work.division)
       return extract_facets_several<Real>(image.view(), *work.division, isovalues, use_of_cells, options, periods);
-    for (std::size_t i = 0; i < isovalues.size(); ++i)
-      use(i, extract_facets<Real>(image.view(), isovalues[i], options, periods), tiles_of(image.grid, periods));
+    for (std::size_t i = 0; i < isovalues.size(); ++i) {
+      ExtractOptions one = options;
+      if (options.work.progress)
+        one.work.progress = [&, done = static_cast<double>(i)](double fraction) {
+          return options.work.progress((done + fraction) / static_cast<double>(isovalues.size()));
+        };
+      use(i, extract_facets<Real>(image.view(), isovalues[i], one, periods), tiles_of(image.grid, periods));
+    }
   };
   work.single_precision ? extract_all(float{}) : extract_all(double{});
 }

@@ -34,8 +34,11 @@ template <int N>
 
 template <int N>
 void take_report(const PickReport<N>& report, Picked& picked) {
-  const std::vector<std::size_t> tile(report.at.begin(), report.at.end());
-  picked = {picked.point, tile, report.distance, report.tiles, report.components};
+  picked.components = report.components;
+  if (!report.found) return;  // an empty contour, or one of caps only
+  picked.tile.assign(report.at.begin(), report.at.end());
+  picked.distance = report.distance;
+  picked.tiles = report.tiles;
 }
 
 /// Units of distances along the axes of a lattice: the step, along the layers' axis the step of the cubic grid that the
@@ -50,10 +53,11 @@ template <int N>
   return steps;
 }
 
-/// Throws InvalidArgument unless a point is in the box of the image's samples. On lattices, odd layers reach half a
-/// step further along the axes before the layers'.
+/// Throws InvalidArgument unless a point is in the box of the image's samples, which has no ends along periods. On
+/// lattices, odd layers reach half a step further along the axes before the layers'.
 template <int N>
-void require_in_box(const Grid<N>& grid, Lattice lattice, const std::array<double, N>& point) {
+void require_in_box(const Grid<N>& grid, Lattice lattice, const std::vector<Period<N>>& periods,
+                    const std::array<double, N>& point) {
   const int layers = lattice == Lattice::fcc_in_time ? N - 2 : N - 1;
   std::array<double, N> lowest, highest;
   lowest.fill(std::numeric_limits<double>::infinity());
@@ -71,6 +75,12 @@ void require_in_box(const Grid<N>& grid, Lattice lattice, const std::array<doubl
       highest[row] = std::max(highest[row], x[row]);
     }
   }
+  for (const Period<N>& period : periods)
+    for (int a = 0; a < N; ++a)
+      if (period.vector[a] != 0.0) {
+        lowest[a] = -std::numeric_limits<double>::infinity();
+        highest[a] = std::numeric_limits<double>::infinity();
+      }
   for (int a = 0; a < N; ++a)
     if (point[a] < lowest[a] || point[a] > highest[a])
       throw Error(ErrorCode::InvalidArgument,
@@ -79,17 +89,20 @@ void require_in_box(const Grid<N>& grid, Lattice lattice, const std::array<doubl
 }
 
 /// The component of the contour of an image on a lattice that is nearest to the point of --pick, with the report on it.
-/// Wrapped contours take any point, modulo the periods. Throws InvalidArgument for points outside of the image.
+/// Points are modulo the periods of a wrapped contour. Throws InvalidArgument for points outside of the image along
+/// other axes.
 template <int N, class Real>
 [[nodiscard]] Contour<N, Real> pick_on_lattice(const Contour<N, Real>& contour, const Grid<N>& grid, Lattice lattice,
                                                const std::array<double, N>& point, Picked& picked, unsigned threads) {
-  if (contour.periods.empty()) require_in_box<N>(grid, lattice, point);
+  require_in_box<N>(grid, lattice, contour.periods, point);
   const ComponentLabels labels = label_components(contour, {threads});
   const NearestComponent nearest =
       nearest_component(contour, labels, point, steps_on_lattice<N>(grid, lattice), {threads});
   std::vector<bool> keep(labels.count);
   if (nearest.label != kNoComponent) keep[nearest.label] = true;
-  picked = {picked.point, {}, nearest.distance, 0, labels.count};
+  picked.components = labels.count;
+  picked.is_in_world = grid.has_world_map();
+  if (nearest.label != kNoComponent) picked.distance = nearest.distance;
   return select_components(contour, labels, keep, {threads});
 }
 

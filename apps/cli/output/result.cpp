@@ -107,6 +107,20 @@ std::string merge_text(const MergeSummary& summary) {
   return text;
 }
 
+std::string pick_text(const Picked& picked) {
+  const auto line = [&](const std::string& found) {
+    return report_line("picked", fmt::format("({}): {}", fmt::join(picked.point, ", "), found));
+  };
+  if (picked.components == 0) return line("no component, as the contour is empty");
+  const std::string all = fmt::format("1 of {}", counted(picked.components, "component", "components"));
+  if (!picked.distance) return line("no tile is active; the component of the nearest vertex") + report_line("", all);
+  const std::string away = number(*picked.distance) + (picked.is_in_world ? " away in the world" : " steps away");
+  if (picked.tile.empty()) return line("the nearest vertex is " + away) + report_line("", all);
+  return line(fmt::format("tile ({}), {}", fmt::join(picked.tile, ", "),
+                          *picked.distance == 0 ? "which contains it" : away)) +
+         report_line("", fmt::format("{} in {}", all, counted(picked.tiles, "tile", "tiles")));
+}
+
 }  // namespace
 
 std::string report_line(std::string_view label, std::string_view value) {
@@ -243,7 +257,7 @@ Json to_json(const ContourResult& result) {
   if (result.picked)
     json["pick"] = {{"point", result.picked->point},
                     {"tile", result.picked->tile.empty() ? Json(nullptr) : Json(result.picked->tile)},
-                    {"distance", result.picked->distance},
+                    {"distance", result.picked->distance ? Json(*result.picked->distance) : Json(nullptr)},
                     {"tiles", result.picked->tile.empty() ? Json(nullptr) : Json(result.picked->tiles)},
                     {"components", result.picked->components}};
   // mesh and times
@@ -272,19 +286,7 @@ std::string to_text(const Console& console, const ContourResult& result) {
   std::string text = fmt::format("{}\n", console.bold(what));
   // input and pick
   text += input_line(result.input, result.variable);
-  if (result.picked && result.picked->tile.empty()) {
-    const Picked& picked = *result.picked;
-    text += report_line("picked", fmt::format("({}): the nearest vertex is {} steps away",
-                                              fmt::join(picked.point, ", "), number(picked.distance)));
-    text += report_line("", fmt::format("1 of {}", counted(picked.components, "component", "components")));
-  } else if (result.picked) {
-    const Picked& picked = *result.picked;
-    text += report_line(
-        "picked", fmt::format("({}): tile ({}), {}", fmt::join(picked.point, ", "), fmt::join(picked.tile, ", "),
-                              picked.distance == 0 ? "which contains it" : number(picked.distance) + " steps away"));
-    text += report_line("", fmt::format("1 of {} in {}", counted(picked.components, "component", "components"),
-                                        counted(picked.tiles, "tile", "tiles")));
-  }
+  if (result.picked) text += pick_text(*result.picked);
   if (result.stats) {
     text += report_line(
         "tiles", fmt::format("{} active of {}", grouped(result.stats->active_tiles), grouped(result.stats->tiles)));

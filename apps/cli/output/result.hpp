@@ -104,10 +104,11 @@ struct Cut {
 /// The result of --pick.
 struct Picked {
   std::vector<double> point;
-  std::vector<std::size_t> tile;  ///< index of the nearest active tile; empty if the whole contour was made
-  double distance = 0;            ///< distance to the tile, or to the nearest vertex, in grid steps
-  std::uint64_t tiles = 0;        ///< tiles reached from it
-  std::uint64_t components = 0;   ///< components in those tiles, or of the whole contour
+  std::vector<std::size_t> tile = {};   ///< index of the nearest active tile; empty if the whole contour was made
+  std::optional<double> distance = {};  ///< distance to the tile, or to the nearest vertex; none if there is none
+  std::uint64_t tiles = 0;              ///< tiles reached from it
+  std::uint64_t components = 0;         ///< components in those tiles, or of the whole contour
+  bool is_in_world = false;             ///< whether `distance` is in the world, not in grid steps
 };
 
 /// Wall-clock seconds of each stage; 0 for stages that were not run.

@@ -98,13 +98,15 @@ requires DimensionBetween<N, 2, 5>
 /// The component nearest to a point.
 struct NearestComponent {
   Index label = kNoComponent;  ///< kNoComponent for a contour without simplices
-  double distance = 0.0;       ///< from the point to the nearest vertex of the component
+  double distance = 0.0;       ///< from the point to the nearest vertex of the component, in steps
 };
 
 /// The component with the vertex nearest to a point: of equally near vertices, the one with the smallest number.
 /// Differences of coordinates are divided by `steps`, by axis, as axes may have different units; `steps` are positive.
-/// A wrapped contour repeats itself by its periods: the distance is that of the nearest repetition. `select_components`
-/// makes its contour. The contour may be any; `extract_component` (tegl/pick.hpp) reads only a part of an image.
+/// A wrapped contour repeats itself by its periods: the distance is that of the nearest repetition, also for oblique
+/// periods. If no vertex has a distance whose square is finite, the label is that of the first vertex in a simplex, and
+/// the distance infinite. `select_components` makes the component's contour. The contour may be any;
+/// `extract_component` (tegl/pick.hpp) reads only a part of an image.
 /// Errors: InvalidArgument (labels that do not fit, a point that is not finite, steps that are not positive);
 /// Cancelled. O(#S + #V) time. Thread-safe.
 template <int N, Coordinate Real>

@@ -14,14 +14,15 @@ void extract_facets_several(const Image<T, N>& image, Division division, std::sp
                             const AxisPeriods<N>& periods) {
   for (const double isovalue : isovalues)
     detail::check_division_arguments<N>(image.grid(), division, isovalue, options, periods);
-  const auto part = [&](std::span<const double> of, std::size_t first) {
-    const detail::StoredDivision<T, N> stored(image, division, of[0], options, periods);
-    detail::pass_facets<Real>(image.grid(), stored, of, stored.options(options),
+  const auto part = [&](std::span<const double> of, std::size_t first, const ExtractOptions& of_part) {
+    const detail::StoredDivision<T, N> stored(image, division, of[0], of_part, periods);
+    detail::pass_facets<Real>(image.grid(), stored, of, stored.options(of_part),
                               [&](std::size_t i, auto facets) { use(first + i, std::move(facets)); });
   };
-  if (division != Division::hybrid && !isovalues.empty()) return part(isovalues, 0);
+  if (division != Division::hybrid && !isovalues.empty()) return part(isovalues, 0, options);
   // other cells for each isovalue
-  for (std::size_t i = 0; i < isovalues.size(); ++i) part(isovalues.subspan(i, 1), i);
+  for (std::size_t i = 0; i < isovalues.size(); ++i)
+    part(isovalues.subspan(i, 1), i, detail::options_of_part(options, i, isovalues.size()));
 }
 
 template <Coordinate Real, Value T, int N>

@@ -18,6 +18,7 @@
 #include "base/atomic_minimum.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/nearest_item.hpp"
+#include "base/nearest_repetition.hpp"
 #include "base/periods.hpp"
 #include "base/workers.hpp"
 #include "mesh/contour_part.hpp"
@@ -306,22 +307,24 @@ nearest_component(const Contour<N, Real>& contour, const ComponentLabels& labels
                   const std::type_identity_t<std::array<double, N>>& steps, const WorkOptions& work) {
   for (int a = 0; a < N; ++a)
     if (!std::isfinite(point[a]) || !(steps[a] > 0.0) || std::isinf(steps[a]))
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("the component nearest to ({}), with steps of {}; expected finite coordinates, and steps "
-                              "above 0",
-                              fmt::join(point, ", "), fmt::join(steps, ", ")));
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("the component nearest to ({}), with steps of ({}); expected finite coordinates, and steps "
+                      "above 0",
+                      fmt::join(point, ", "), fmt::join(steps, ", ")));
   require_labels(rows_of(contour), labels, {work.threads, detail::part_of(work.progress, 0.0, 0.5)});
   const Progress searching = detail::part_of(work.progress, 0.5, 1.0);
+  const detail::NearestRepetition<N> repetitions(contour.periods, steps);
   const detail::NearestItem nearest = detail::nearest_item(contour.vertices.size(), searching, [&](std::size_t v) {
     if (labels.vertices[v] == kNoComponent) return std::numeric_limits<double>::infinity();
-    std::array<double, N> here = detail::widened_point<N>(contour.vertices[v]);
-    detail::move_near<N>(contour.periods, point, here);
-    double square = 0;
-    for (int a = 0; a < N; ++a) square += (here[a] - point[a]) / steps[a] * ((here[a] - point[a]) / steps[a]);
-    return square;
+    return repetitions.square(point, detail::widened_point<N>(contour.vertices[v]));
   });
-  if (nearest.item == detail::NearestItem::kNone) return {};
-  return {labels.vertices[nearest.item], std::sqrt(nearest.square)};
+  if (nearest.item != detail::NearestItem::kNone) return {labels.vertices[nearest.item], std::sqrt(nearest.square)};
+  // no square is finite: the first labelled vertex
+  const auto first =
+      std::find_if(labels.vertices.begin(), labels.vertices.end(), [](Index label) { return label != kNoComponent; });
+  if (first == labels.vertices.end()) return {};
+  return {*first, std::numeric_limits<double>::infinity()};
 }
 
 template <int N, Coordinate Real>

@@ -303,12 +303,58 @@ TEST(Components, NearestToAPointIsThatOfAllDistances) {
   }
 }
 
+TEST(Components, NearestToAPointIsModuloObliquePeriods) {
+  // shares of these periods, rounded, are not those of the nearest repetition
+  Contour<2, double> contour;
+  contour.vertices = {{0.0, 0.0}, {0.01, 0.0}, {0.3, 0.1}, {0.31, 0.1}};
+  contour.simplices = {{0, 1}, {2, 3}};
+  contour.periods = {{{1.0, 0.0}, {1.0, -3.0}, 0.0}, {{0.9, 0.3}, {0.0, 1.0 / 0.3}, 0.0}};
+  const ComponentLabels labels = label_components(contour);
+  for (const std::array<double, 2>& steps : {std::array{1.0, 1.0}, {1.0, 0.2}, {0.1, 1.0}})
+    for (int at = 0; at < 400; ++at) {
+      const std::array point = {0.05 * (at % 20) + 0.002, 0.03 * (at / 20) - 0.1};
+      double nearest = std::numeric_limits<double>::infinity();
+      Index label = kNoComponent;
+      for (Index v = 0; v < 4; ++v)
+        for (int i = -15; i <= 15; ++i)
+          for (int k = -15; k <= 15; ++k) {
+            const double x = (contour.vertices[v][0] + i + 0.9 * k - point[0]) / steps[0];
+            const double y = (contour.vertices[v][1] + 0.3 * k - point[1]) / steps[1];
+            if (std::hypot(x, y) >= nearest - 1e-9) continue;
+            nearest = std::hypot(x, y);
+            label = labels.vertices[v];
+          }
+      const NearestComponent found = nearest_component(contour, labels, point, steps);
+      EXPECT_NEAR(found.distance, nearest, 1e-8) << point[0] << ' ' << point[1];
+      EXPECT_EQ(found.label, label) << point[0] << ' ' << point[1];
+    }
+}
+
+TEST(Components, NearestToAPointBesideOneObliquePeriodIsOrthogonal) {
+  // a strip along (1, 0.5): its share does not depend on y
+  Contour<2, double> contour = two_segments();
+  contour.periods = {{{1.0, 0.5}, {1.0, 0.0}, 0.0}};
+  const ComponentLabels labels = label_components(contour);
+  EXPECT_NEAR(nearest_component(contour, labels, {0.0, 20.0}, {1.0, 1.0}).distance, std::hypot(8.0, 15.0), 1e-9);
+}
+
+TEST(Components, NearestToAPointWhoseDistanceOverflowsIsTheFirst) {
+  Contour<2, double> contour = two_segments();
+  contour.vertices.insert(contour.vertices.begin(), {9.0, 9.0});  // in no simplex
+  contour.simplices = {{1, 2}, {3, 4}};
+  const ComponentLabels labels = label_components(contour);
+  const NearestComponent found = nearest_component(contour, labels, {1e200, 0.0});
+  EXPECT_EQ(found.label, 0u);
+  EXPECT_TRUE(std::isinf(found.distance));
+  EXPECT_EQ(nearest_component(contour, labels, {1.0, 0.0}, {1e-300, 1.0}).label, 0u);
+}
+
 TEST(Components, NearestToAPointNamesWrongNumbers) {
   const Contour<2, double> contour = two_segments();
   const ComponentLabels labels = label_components(contour);
   const double nan = std::nan("");
   expect_error(ErrorCode::InvalidArgument, "(1, nan)", [&] { nearest_component(contour, labels, {1.0, nan}); });
-  expect_error(ErrorCode::InvalidArgument, "steps of 1, 0", [&] {
+  expect_error(ErrorCode::InvalidArgument, "steps of (1, 0)", [&] {
     nearest_component(contour, labels, {1.0, 0.0}, {1.0, 0.0});
   });
   expect_error(ErrorCode::InvalidArgument, "labels for 0 vertices", [&] {
