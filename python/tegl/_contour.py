@@ -292,7 +292,7 @@ class Contour(ArrayOrdered):
             found["places"] = found["places"][:, ::-1]
         return Intersections(**found)
 
-    def _of_axes(self, name: str, given: float | Sequence[float]) -> list[float]:
+    def _of_axes(self, name: str, given: float | Sequence[float] | np.ndarray) -> list[float]:
         """One number for all axes, or one for each, in the library's order."""
         if not _results.is_list(given):
             return [_arguments.as_number(name, given)] * self.ndim

@@ -235,6 +235,7 @@ requires DimensionBetween<N, 2, 4>
 void extract_facets_several(const Image<T, N>& image, Lattice lattice, std::span<const double> isovalues,
                             const std::type_identity_t<FacetSink<N, Real>>& use, const ExtractOptions& options = {},
                             const AxisPeriods<N>& periods = {});
+/// As above, for an image whose cells are divided into simplices.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 void extract_facets_several(const Image<T, N>& image, Division division, std::span<const double> isovalues,
