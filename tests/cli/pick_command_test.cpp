@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "sample_files.hpp"
+#include "tegl/io.hpp"
 #include "tegl_program.hpp"
 
 namespace tegl::test {

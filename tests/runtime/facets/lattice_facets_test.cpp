@@ -239,7 +239,8 @@ TEST(LatticeFacets, OfDivisionsWithMissingValuesAreSound) {
               EXPECT_EQ(expected.components, check(facets).components);
               EXPECT_EQ(expected.boundary_simplices == 0, check(facets).border == 0);
               // the border alone has caps; with the denser gaps, all cells in 4D may have one
-              if (stride == 13u) EXPECT_EQ(all_high && (!close || axes == (1u << N) - 1), facets.vertices.empty());
+              const bool is_empty = all_high && (!close || axes == (1u << N) - 1);
+              EXPECT_TRUE(stride != 13u || is_empty == facets.vertices.empty());
             }
           }
     }
