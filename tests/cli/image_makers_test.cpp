@@ -364,7 +364,7 @@ TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
                                      "x,y", "--close", "--at", place, "-o", path("cut.vtkhdf"), "--json"});
     ASSERT_EQ(part.exit, 0) << part.err;
     EXPECT_GT(part.json()["simplices"], 100);
-    EXPECT_EQ(part.json()["boundary_simplices"] == 0, place[0] == 'u');
+    EXPECT_EQ(part.json()["boundary_simplices"], 0) << place;
   }
   const RunResult about = run_tegl({"info", path("five.vtkhdf"), "--json"});
   ASSERT_EQ(about.exit, 0) << about.err;
