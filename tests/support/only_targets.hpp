@@ -25,11 +25,12 @@ class OnlyTargets {
   }
 };
 
-/// Calls test() with each instruction set, the best one first.
+/// Calls test() with each instruction set, the best one first. For a set that the library disables, as SSSE3, the test
+/// runs with the best one below it.
 template <class Test>
 void with_all_targets(const Test& test) {
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
+    SCOPED_TRACE(testing::Message() << "at most " << hwy::TargetName(target));
     const OnlyTargets only(target);
     test();
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Which tetrahedra of a star are neighbours across the triangles at its centre, as words of 64 bits. Files that Highway
-// compiles once per instruction set include this after Highway's headers, so it is read once per instruction set.
+// compiles once per instruction set include this after base/dispatch.hpp, so it is read once per instruction set.
 //
 // Tetrahedra are compared by the lower 16 bits of their numbers, twice as many at a time as by whole numbers. Numbers
 // with equal lower bits would be taken for each other. That is found by counting: if each triangle at the centre is in

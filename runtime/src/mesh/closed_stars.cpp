@@ -15,8 +15,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mesh/closed_stars.cpp"
-#include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
+#include "base/dispatch.hpp"
 #include "base/star_neighbours.hpp"
 #include "hwy/highway.h"
 
@@ -27,6 +27,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET != HWY_SCALAR && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+
+static_assert(kReadable <= Stars::kPadding);
 
 /// The edges of v's link between vertices above v, in one tetrahedron with v. A tetrahedron with one vertex above has
 /// an edge from there to v, so that all vertices above are starts of edges.

@@ -11,8 +11,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mesh/star_search.cpp"
-#include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
+#include "base/dispatch.hpp"
 #include "base/star_neighbours.hpp"
 #include "hwy/highway.h"
 

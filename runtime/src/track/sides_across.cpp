@@ -10,8 +10,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "track/sides_across.cpp"
-#include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
+#include "base/dispatch.hpp"
 #include "base/star_neighbours.hpp"
 #include "hwy/highway.h"
 
@@ -20,6 +20,8 @@ namespace tegl::detail {
 namespace HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+
+static_assert(kReadable <= Stars::kPadding);
 
 using Set = std::uint64_t;  ///< of tetrahedra of a star
 
