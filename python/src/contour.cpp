@@ -8,6 +8,7 @@
 #include "binding.hpp"
 #include "docs.hpp"
 #include "tegl/periodic.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl::python {
 
@@ -159,6 +160,15 @@ void bind_contour(py::module_& m) {
     return c.direction == GradientDirection::descent ? "descent" : "ascent";
   };
   const auto periods = [](const auto& c, const py::object&) { return period_numbers(c.periods); };
+  const auto is_modulo = [](const AnyContour& contour, int axis) {
+    return std::visit(
+        [&]<int N, class Real>(const Contour<N, Real>& c) {
+          std::vector<Vector<N>> vectors;
+          for (const Period<N>& period : c.periods) vectors.push_back(period.vector);
+          return period_along<N>(vectors, axis).has_value();
+        },
+        contour.contour);
+  };
   const auto of_vertices = [](const auto& c, const py::object& self) {
     return attribute_arrays(c.vertex_attributes, self);
   };
@@ -181,6 +191,7 @@ void bind_contour(py::module_& m) {
       .def_property_readonly("axis_units", of_contour(units))
       .def_property_readonly("direction", of_contour(direction))
       .def_property_readonly("periods", of_contour(periods), "vector, dual and start of each period, flat")
+      .def("is_modulo", is_modulo, py::arg("axis"), "Whether places across an axis are modulo a period.")
       .def_property_readonly("vertex_attributes", of_contour(of_vertices), "name -> (values, unit)")
       .def_property_readonly("simplex_attributes", of_contour(of_simplices), "name -> (values, unit)")
       .def_readonly("isovalue", &AnyContour::isovalue);

@@ -157,8 +157,7 @@ class Contour(ArrayOrdered):
 
     def _require_places(self, axis: int, places: Sequence[float], given: Sequence) -> None:
         """Raises a ValueError unless all places along an axis lie in that extent. A periodic axis has every place."""
-        lengths = np.abs(self.periods)
-        if np.any(lengths[:, axis] > 1e-9 * lengths.max(axis=1, initial=0.0)):
+        if self._core.is_modulo(self.ndim - 1 - axis if self._is_reversed else axis):
             return
         extent, of = self._extent_around()
         _outside.require_places(extent, axis, places, given, self.vertices.dtype, self.axis_names[axis],

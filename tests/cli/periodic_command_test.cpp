@@ -239,6 +239,25 @@ TEST_F(PeriodicCommand, CutsAcrossAPeriodAreModuloThePeriod) {
   EXPECT_THAT(run.err, HasSubstr("lies outside of the saved contour"));
 }
 
+TEST_F(PeriodicCommand, PlacesBesideThePeriodOfATurnedImageAreItsPlaces) {
+  OwnedImage<float, 3> image = std::get<OwnedImage<float, 3>>(std::get<AnyImageN<3>>(read_image(file_).image));
+  for (const double turned : {6e-17, 0.002}) {
+    image.grid.linear[1][0] = turned;
+    write_image(image.view(), path("turned.nrrd"));
+    const std::vector<std::string> input = {path("turned.nrrd"), "--iso", "0", "--periodic", "x"};
+    std::vector<std::string> arguments = {"slice"};
+    arguments.insert(arguments.end(), input.begin(), input.end());
+    arguments.insert(arguments.end(), {"--at", "y=9.5", "-o", path("cut.vtkhdf")});
+    const RunResult cut = run_tegl(arguments);
+    ASSERT_EQ(cut.exit, 0) << cut.err;
+    EXPECT_EQ(cut.err.find("unrolled") == std::string::npos, turned < 0.001) << cut.err;
+    EXPECT_NEAR(*measure(to_contour<2>(read_mesh(path("cut.vtkhdf")))).content, std::numbers::pi * 25, 1.5);
+    arguments[arguments.size() - 3] = "y=-40";
+    const RunResult outside = run_tegl(arguments);
+    EXPECT_NE(outside.exit, 0);
+  }
+}
+
 TEST_F(PeriodicCommand, ImagesAreInterpolatedAcrossTheSeam) {
   // the image itself has the isovalue at each vertex of its contour
   const std::string itself = path("itself.vtkhdf"), saved = path("saved.vtkhdf");

@@ -91,11 +91,9 @@ CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved,
   if (curved.empty() || periodic.empty()) return space;
   const auto take_periods = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
     const std::vector<CurvedSeam<N>> seams = seams_of(owned.grid, curved, periodic);
-    for (std::size_t a = 0; a < N; ++a) {
-      std::vector<double> along;
-      for (const CurvedSeam<N>& seam : seams) along.push_back(seam.vector[a]);
-      (void)take_period(space.axes[a], along);
-    }
+    std::vector<Vector<N>> vectors;
+    for (const CurvedSeam<N>& seam : seams) vectors.push_back(seam.vector);
+    for (int a = 0; a < N; ++a) (void)take_period<N>(space.axes[static_cast<std::size_t>(a)], vectors, a);
   };
   std::visit([&](const auto& typed) { std::visit(take_periods, typed); }, image);
   return space;
@@ -128,12 +126,13 @@ CutSpace space_of_longer(const OwnedImage<T, N>& owned, const std::vector<std::s
     if (is_longer[a]) axis = with_repeated_sample(axis, periods[a]);
   }
   CutSpace space = space_of(grid);
-  for (std::size_t a = 0; a < N; ++a) {
-    std::vector<double> along;
-    for (std::size_t b = 0; b < N; ++b)
-      if (is_longer[b]) along.push_back(grid.linear[a][b] * periods[b]);
-    (void)take_period(space.axes[a], along);
+  std::vector<Vector<N>> vectors;
+  for (std::size_t b = 0; b < N; ++b) {
+    if (!is_longer[b]) continue;
+    Vector<N>& vector = vectors.emplace_back();
+    for (std::size_t a = 0; a < N; ++a) vector[a] = grid.linear[a][b] * periods[b];
   }
+  for (int a = 0; a < N; ++a) (void)take_period<N>(space.axes[static_cast<std::size_t>(a)], vectors, a);
   return space;
 }
 

@@ -158,32 +158,24 @@ std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::jo
 
 }  // namespace
 
-bool take_period(CutAxis& axis, std::span<const double> along) {
-  const auto is_crossing = [](double x) { return x != 0.0; };
-  if (std::count_if(along.begin(), along.end(), is_crossing) != 1) return false;
-  axis.period = std::abs(*std::find_if(along.begin(), along.end(), is_crossing));
-  axis.last = axis.first + axis.period;
-  return true;
-}
-
 template <int N>
 CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
   const auto at = static_cast<std::size_t>(a);
-  std::vector<double> along;
+  std::vector<Vector<N>> vectors;
   double before = 0.0, after = 0.0;  // `unroll` moves simplices to the end of the period
   for (const Period<N>& period : periods) {
-    along.push_back(period.vector[at]);
-    before += std::min(0.0, along.back());
-    after += std::max(0.0, along.back());
+    vectors.push_back(period.vector);
+    before += std::min(0.0, period.vector[at]);
+    after += std::max(0.0, period.vector[at]);
   }
-  if (!take_period(axis, along)) {
+  const std::optional<std::size_t> number = take_period<N>(axis, vectors, a);
+  if (!number) {
     axis.first += before;
     axis.last += after;
     return axis;
   }
   // the seam, if it is across the axis
-  const Period<N>& own =
-      *std::find_if(periods.begin(), periods.end(), [&](const auto& p) { return p.vector[at] != 0.0; });
+  const Period<N>& own = periods[*number];
   for (std::size_t b = 0; b < N; ++b)
     if (b != at && std::abs(own.dual[b]) > 1e-9 * std::abs(own.dual[at])) return axis;
   const double start = own.start / own.dual[at];

@@ -3,6 +3,9 @@
 // Values of --at and --plane, the space that is cut, and the output file of each cut.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,6 +16,7 @@
 #include "tegl/contour.hpp"
 #include "tegl/io/images.hpp"
 #include "tegl/io/meshes.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl::cli {
 
@@ -48,11 +52,18 @@ struct CutAxis {
   double period = 0;  ///< if above 0: places that differ by it are the same, and first to last is one period
 };
 
-/// Makes an axis periodic, from its first place on, if exactly one period crosses it. `along`: the components of the
-/// periods' vectors along the axis. Returns whether it is periodic.
-bool take_period(CutAxis& axis, std::span<const double> along);
+/// Makes an axis periodic, from its first place on, if one of the periods is along it (`period_along`). `vectors`: of
+/// the periods. Returns the number of that one.
+template <int N>
+std::optional<std::size_t> take_period(CutAxis& axis, std::span<const Vector<N>> vectors, int a) {
+  const std::optional<std::size_t> own = period_along<N>(vectors, a);
+  if (!own) return own;
+  axis.period = std::abs(vectors[*own][static_cast<std::size_t>(a)]);
+  axis.last = axis.first + axis.period;
+  return own;
+}
 
-/// The axis of a wrapped contour: periodic if one period crosses it, otherwise with the range of the unrolled contour.
+/// The axis of a wrapped contour: periodic if a period is along it, otherwise with the range of the unrolled contour.
 /// `axis`: with the range of the wrapped contour. N is 3 to 5.
 template <int N>
 CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods);

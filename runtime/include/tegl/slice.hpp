@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <initializer_list>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <vector>
@@ -58,16 +59,16 @@ namespace tegl {
 /// or lie along samples of the isovalue. `slice_image` reads the image and gives the layer's contour.
 ///
 /// A wrapped contour (tegl/periodic.hpp) is cut by hyperplanes along all of its periods, and the cut is wrapped, too;
-/// or across an axis that one period crosses. Then the place is modulo this period, and the cut is that of the
-/// contour's endless repetition along it: complete and joined at the seam, also if the seam is not plane, with the
-/// other periods. `cuts_wrapped` tells which; other hyperplanes across a period are refused.
+/// or across an axis with a period along it (`period_along`). Then the place is modulo this period, and the cut is that
+/// of the contour's endless repetition along it: complete and joined at the seam, also if the seam is not plane, with
+/// the other periods. `cuts_wrapped` tells which; other hyperplanes across a period are refused.
 ///
 /// Quadrilaterals are split by the shorter diagonal; prisms (N = 5) into three tetrahedra, in the order of the
 /// contour's vertex numbers. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
 /// attributes or normals of another number, a wrapped contour unless `cuts_wrapped`), Cancelled. If the hyperplane is
 /// beyond the contour, the cut is empty. O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c)
-/// memory. The result does not depend on the number of threads. Thread-safe.
+/// memory, across a period 8 #V bytes. The result does not depend on the number of threads. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane,
@@ -97,6 +98,15 @@ template <int N>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods,
                                 const Hyperplane<N>& hyperplane);
+
+/// The period along an axis: the number of the only one of `vectors` (of periods, in world coordinates) with a part
+/// along the axis, if the rest of it is a combination of the others, up to rounding (parts below 3e-5 of its length).
+/// Places across the axis are modulo this part. None: no vector has such a part, several have, or the only one is
+/// oblique. N = 2 to 5.
+template <int N>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::optional<std::size_t> period_along(std::type_identity_t<std::span<const Vector<N>>> vectors,
+                                                      int axis);
 
 /// A place on a periodic axis, moved by multiples of the period into [first, first + period). Unchanged if it is not
 /// finite or the period is not positive.

@@ -33,8 +33,11 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 bool is_known(double longitude) { return std::abs(longitude) <= kMost; }
 
-/// The turns that bring `to` nearest to `from`.
-double turns(double from, double to) { return std::round((from - to) / kTurn); }
+/// The turns that bring `to` nearest to `from`; the fewer of two that are equally near.
+double turns(double from, double to) {
+  const double apart = (from - to) / kTurn;
+  return apart > 0.0 ? std::ceil(apart - 0.5) : std::floor(apart + 0.5);
+}
 
 struct Run {
   std::size_t first, end;

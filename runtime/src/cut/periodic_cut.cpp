@@ -17,7 +17,7 @@
 namespace tegl {
 
 double place_in_period(double place, double first, double period) {
-  if (!std::isfinite(place) || !(period > 0.0)) return place;
+  if (!std::isfinite(place) || !(period > 0.0) || !std::isfinite(period)) return place;
   const double moved = place - std::floor((place - first) / period) * period;
   return moved >= first + period ? first : std::max(moved, first);
 }
@@ -29,6 +29,50 @@ bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods, cons
       detail::crossed_periods<N>(detail::HyperplaneFamily<N>(hyperplane.normal), periods);
   return crossed.count == 0 || crossed.is_modulo;
 }
+
+template <int N>
+requires DimensionBetween<N, 2, 5> std::optional<std::size_t> period_along(
+    std::type_identity_t<std::span<const Vector<N>>> vectors, int axis) {
+  constexpr double kRounding = 1e-9;  // of squares
+  const auto inner = [](const Vector<N>& v, const Vector<N>& w) {
+    double sum = 0.0;
+    for (int a = 0; a < N; ++a) sum += v[a] * w[a];
+    return sum;
+  };
+  std::optional<std::size_t> found;
+  std::vector<Vector<N>> others;  // orthogonal, of length 1
+  const auto take_out_others = [&](Vector<N>& v) {
+    for (const Vector<N>& other : others) {
+      const double share = inner(v, other);
+      for (int a = 0; a < N; ++a) v[a] -= share * other[a];
+    }
+  };
+  for (std::size_t p = 0; p < vectors.size(); ++p) {
+    Vector<N> v = vectors[p];
+    const double length = inner(v, v);
+    if (v[axis] * v[axis] > kRounding * length) {
+      if (found) return std::nullopt;
+      found = p;
+      continue;
+    }
+    take_out_others(v);
+    const double left = inner(v, v);
+    if (!(left > kRounding * length)) continue;
+    for (int a = 0; a < N; ++a) v[a] /= std::sqrt(left);
+    others.push_back(v);
+  }
+  if (!found) return std::nullopt;
+  Vector<N> rest = vectors[*found];
+  const double length = inner(rest, rest);
+  rest[axis] = 0.0;
+  take_out_others(rest);
+  return inner(rest, rest) <= kRounding * length ? found : std::nullopt;
+}
+
+template std::optional<std::size_t> period_along<2>(std::span<const Vector<2>>, int);
+template std::optional<std::size_t> period_along<3>(std::span<const Vector<3>>, int);
+template std::optional<std::size_t> period_along<4>(std::span<const Vector<4>>, int);
+template std::optional<std::size_t> period_along<5>(std::span<const Vector<5>>, int);
 
 template bool cuts_wrapped<3>(std::span<const Period<3>>, const Hyperplane<3>&);
 template bool cuts_wrapped<4>(std::span<const Period<4>>, const Hyperplane<4>&);

@@ -7,14 +7,16 @@
 // divided at the seam. So the cut of the repetition by the hyperplane is the whole cut, and it is joined at the seam.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <span>
+#include <vector>
 
 #include "base/periods.hpp"
 #include "cut/hyperplane_family.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/slice.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
@@ -34,7 +36,7 @@ bool crosses(const HyperplaneFamily<N>& family, const Period<N>& period) {
 struct CrossedPeriods {
   std::size_t count = 0;   ///< how many they cross
   std::size_t period = 0;  ///< the last of these
-  bool is_modulo = false;  ///< whether they are across an axis and cross one: then their places are modulo this period
+  bool is_modulo = false;  ///< whether they are across an axis and it is along this: places are modulo this period
 };
 
 template <int N>
@@ -43,11 +45,9 @@ CrossedPeriods crossed_periods(const HyperplaneFamily<N>& family, std::span<cons
   for (std::size_t p = 0; p < periods.size(); ++p)
     if (crosses<N>(family, periods[p])) result = {result.count + 1, p, false};
   if (result.count != 1 || !family.is_across_axis()) return result;
-  double length = 0.0;
-  const Vector<N>& vector = periods[result.period].vector;
-  for (int a = 0; a < N; ++a) length += vector[a] * vector[a];
-  const double along = vector[family.dropped_axis()];
-  result.is_modulo = along * along > 1e-9 * length;
+  std::vector<Vector<N>> vectors;
+  for (const Period<N>& period : periods) vectors.push_back(period.vector);
+  result.is_modulo = period_along<N>(vectors, family.dropped_axis()) == result.period;
   return result;
 }
 

@@ -252,6 +252,9 @@ TEST(NetCdfCoordinates, LongitudesThatAreNoPlacesRemain) {
   continue_longitudes(longitudes, std::array<std::size_t, 2>{4, 2});
   EXPECT_EQ(longitudes,
             (std::vector<double>{1e20, 170, 180, -9999, std::numeric_limits<double>::infinity(), 175, 185, 190}));
+  std::vector<double> opposite = {0, 180, 90, 270};  // as across a pole: both ways are equally long
+  continue_longitudes(opposite, std::array<std::size_t, 2>{2, 2});
+  EXPECT_EQ(opposite, (std::vector<double>{0, 180, 90, 270}));
   std::vector<double> unknown(8, kUnknown), none;
   continue_longitudes(unknown, std::array<std::size_t, 2>{4, 2});
   for (const double x : unknown) EXPECT_TRUE(std::isnan(x));

@@ -10,7 +10,9 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
+#include <vector>
 
 #include "errors.hpp"
 #include "tegl/check.hpp"
@@ -560,6 +562,47 @@ TEST(Periodic, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
   };
   test.template operator()<3>({12, 16, 10});
   test.template operator()<4>({8, 6, 10, 8});
+}
+
+TEST(Periodic, PlacesAreModuloAPeriodAlongTheAxis) {
+  const auto along = [](const std::vector<Vector<3>>& vectors, int axis) { return period_along<3>(vectors, axis); };
+  const std::optional<std::size_t> none, first = 0, second = 1;
+  EXPECT_EQ(along({{2, 0, 0}}, 0), first);
+  EXPECT_EQ(along({{2, 0, 0}}, 1), none);
+  EXPECT_EQ(along({}, 1), none);
+  for (const double rounding : {6e-17, -1e-8}) {
+    EXPECT_EQ(along({{2, rounding, 0}}, 0), first);
+    EXPECT_EQ(along({{2, rounding, 0}}, 1), none);
+  }
+  // oblique, and oblique by a multiple of another period
+  EXPECT_EQ(along({{2, 0.003, 0}}, 0), none);
+  EXPECT_EQ(along({{2, 0.003, 0}}, 1), none);
+  EXPECT_EQ(along({{1, 0, 0}, {0.5, 0.8, 0}}, 1), second);
+  EXPECT_EQ(along({{0.5, 0.8, 0}, {1, 0, 0}}, 1), first);
+  EXPECT_EQ(along({{1, 0, 0}, {0.5, 0.8, 0}}, 0), none);
+  EXPECT_EQ(along({{1, 0, 0}, {0.5, 0.8, 0.1}}, 1), none);
+  EXPECT_EQ(along({{1, 0, 1}, {0, 1, 1}, {0.5, 0.5, 3}}, 2), none);
+}
+
+TEST(Periodic, CutsBesideAnAxisWithRoundingOfTheFrameAreNotModulo) {
+  auto image = torus_image<3>({12, 16, 10}, [](const auto& x) { return waves_from<3>(x, 0, 0.0); });
+  const AxisPeriods<3> periods = {1.0, 0.0, 0.0};
+  const auto straight = slice(wrapped<double>(image, periods, 0.05), Hyperplane<3>::across(1, 0.31));
+  image.grid.linear[1][0] = 6e-17;
+  const auto contour = wrapped<double>(image, periods, 0.05);
+  const auto cut = slice(contour, Hyperplane<3>::across(1, 0.31));
+  EXPECT_GT(straight.simplices.size(), 10u);
+  EXPECT_EQ(cut.simplices.size(), straight.simplices.size());
+  EXPECT_NEAR(measure(cut).size, measure(straight).size, 1e-9);
+  EXPECT_TRUE(slice(contour, Hyperplane<3>::across(1, 7.31)).simplices.empty());
+  EXPECT_NEAR(measure(slice(contour, Hyperplane<3>::across(0, 1.25))).size,
+              measure(slice(contour, Hyperplane<3>::across(0, 0.25))).size, 1e-9);
+  image.grid.linear[1][0] = 0.002;
+  const auto oblique = wrapped<double>(image, periods, 0.05);
+  for (const int axis : {0, 1}) {
+    EXPECT_FALSE(cuts_wrapped<3>(oblique.periods, Hyperplane<3>::across(axis, 0.31)));
+    EXPECT_THROW((void)slice(oblique, Hyperplane<3>::across(axis, 0.31)), Error);
+  }
 }
 
 TEST(Periodic, CutsAcrossAPeriodKeepAttributesAndNormals) {
