@@ -75,4 +75,11 @@ inline bool is_manifold(const MeshReport& report) {
 }
 inline bool is_closed(const MeshReport& report) { return is_manifold(report) && report.boundary_simplices == 0; }
 
+/// The wrapped contour of an image, which may be a temporary.
+template <class Real = float, class T, int N>
+Contour<N, Real> wrapped(const OwnedImage<T, N>& image, const AxisPeriods<N>& periods, double isovalue,
+                         const ExtractOptions& options = {}) {
+  return extract_periodic<Real>(image.view(), periods, isovalue, options);
+}
+
 }  // namespace tegl::test

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Cuts of wrapped contours across a period, at places modulo the period (tegl/slice.hpp).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "tegl/check.hpp"
+#include "tegl/curved.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/periodic.hpp"
+#include "tegl/slice.hpp"
+#include "torus.hpp"
+
+namespace tegl::test {
+namespace {
+
+template <int N>
+double waves_from(std::array<double, N> x, int axis, double start) {
+  x[axis] += start;
+  double sum = 0.4 * std::cos(kTurn * (x[0] - x[N - 1]));
+  for (int a = 0; a < N; ++a) sum += (0.5 + 0.1 * a) * std::sin(kTurn * x[a] + a);
+  return sum;
+}
+
+TEST(PeriodicCuts, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
+  const auto test = []<int N>(const std::array<std::size_t, N>& sizes) {
+    for (int axis = 0; axis < N; ++axis) {
+      const auto from = [&](double start) {
+        const auto image =
+            torus_image<N>(sizes, [&](const std::array<double, N>& x) { return waves_from<N>(x, axis, start); });
+        return wrapped<double>(image, all_periodic<N>(), 0.05);
+      };
+      const auto contour = from(0.0), other = from(0.5);
+      for (const double at : {0.0, 0.01, 0.1, 0.25, 0.93, 0.99}) {
+        const auto cut = slice(contour, Hyperplane<N>::across(axis, at));
+        const auto expected = slice(other, Hyperplane<N>::across(axis, at - 0.5));
+        EXPECT_TRUE(is_closed(check(cut))) << at;
+        EXPECT_EQ(cut.periods.size(), static_cast<std::size_t>(N - 1));
+        EXPECT_EQ(check(cut).euler, check(expected).euler);
+        EXPECT_EQ(check(cut).components, check(expected).components);
+        EXPECT_NEAR(measure(cut).size, measure(expected).size, 1e-9) << at;
+        // at a place a period further, and with the opposite normal
+        const auto further = slice(contour, Hyperplane<N>::across(axis, at + 3.0));
+        EXPECT_NEAR(measure(further).size, measure(cut).size, 1e-9);
+        Hyperplane<N> opposite = Hyperplane<N>::across(axis, 1.0 - at);
+        opposite.normal[axis] = -1.0;
+        const auto below = slice(contour, opposite);
+        EXPECT_TRUE(is_closed(check(below)));
+        EXPECT_NEAR(measure(below).size, measure(cut).size, 1e-9);
+      }
+      // the same bits at the start and the end, in a stack, and as measured
+      const std::vector<double> places = {0.0, 1.0, 0.05, -0.3};
+      std::vector<Hyperplane<N>> hyperplanes;
+      for (const double at : places) hyperplanes.push_back(Hyperplane<N>::across(axis, at));
+      const auto stack = slice_stack(contour, hyperplanes);
+      EXPECT_EQ(stack[0].vertices, stack[1].vertices);
+      EXPECT_EQ(stack[0].simplices, stack[1].simplices);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const auto cut = slice(contour, hyperplanes[i]);
+        EXPECT_EQ(cut.vertices, stack[i].vertices);
+        EXPECT_EQ(cut.simplices, stack[i].simplices);
+        if (axis + 1 == N) {
+          EXPECT_EQ(measure_cuts(contour, places)[i].size, measure(cut).size);
+        }
+      }
+    }
+  };
+  test.template operator()<3>({12, 16, 10});
+  test.template operator()<4>({8, 6, 10, 8});
+}
+
+TEST(PeriodicCuts, PlacesAreModuloAPeriodAlongTheAxis) {
+  const auto along = [](const std::vector<Vector<3>>& vectors, int axis) { return period_along<3>(vectors, axis); };
+  const std::optional<std::size_t> none, first = 0, second = 1;
+  EXPECT_EQ(along({{2, 0, 0}}, 0), first);
+  EXPECT_EQ(along({{2, 0, 0}}, 1), none);
+  EXPECT_EQ(along({}, 1), none);
+  for (const double rounding : {6e-17, -1e-8}) {
+    EXPECT_EQ(along({{2, rounding, 0}}, 0), first);
+    EXPECT_EQ(along({{2, rounding, 0}}, 1), none);
+  }
+  // oblique, and oblique by a multiple of another period
+  EXPECT_EQ(along({{2, 0.003, 0}}, 0), none);
+  EXPECT_EQ(along({{2, 0.003, 0}}, 1), none);
+  EXPECT_EQ(along({{1, 0, 0}, {0.5, 0.8, 0}}, 1), second);
+  EXPECT_EQ(along({{0.5, 0.8, 0}, {1, 0, 0}}, 1), first);
+  EXPECT_EQ(along({{1, 0, 0}, {0.5, 0.8, 0}}, 0), none);
+  EXPECT_EQ(along({{1, 0, 0}, {0.5, 0.8, 0.1}}, 1), none);
+  EXPECT_EQ(along({{1, 0, 1}, {0, 1, 1}, {0.5, 0.5, 3}}, 2), none);
+}
+
+TEST(PeriodicCuts, CutsBesideAnAxisWithRoundingOfTheFrameAreNotModulo) {
+  auto image = torus_image<3>({12, 16, 10}, [](const auto& x) { return waves_from<3>(x, 0, 0.0); });
+  const AxisPeriods<3> periods = {1.0, 0.0, 0.0};
+  const auto straight = slice(wrapped<double>(image, periods, 0.05), Hyperplane<3>::across(1, 0.31));
+  image.grid.linear[1][0] = 6e-17;
+  const auto contour = wrapped<double>(image, periods, 0.05);
+  const auto cut = slice(contour, Hyperplane<3>::across(1, 0.31));
+  EXPECT_GT(straight.simplices.size(), 10u);
+  EXPECT_EQ(cut.simplices.size(), straight.simplices.size());
+  EXPECT_NEAR(measure(cut).size, measure(straight).size, 1e-9);
+  EXPECT_TRUE(slice(contour, Hyperplane<3>::across(1, 7.31)).simplices.empty());
+  EXPECT_NEAR(measure(slice(contour, Hyperplane<3>::across(0, 1.25))).size,
+              measure(slice(contour, Hyperplane<3>::across(0, 0.25))).size, 1e-9);
+  image.grid.linear[1][0] = 0.002;
+  const auto oblique = wrapped<double>(image, periods, 0.05);
+  for (const int axis : {0, 1}) {
+    EXPECT_FALSE(cuts_wrapped<3>(oblique.periods, Hyperplane<3>::across(axis, 0.31)));
+    EXPECT_THROW((void)slice(oblique, Hyperplane<3>::across(axis, 0.31)), Error);
+  }
+}
+
+TEST(PeriodicCuts, CutsAcrossAPeriodKeepAttributesAndNormals) {
+  ExtractOptions options;
+  options.normals = Normals::differences;
+  auto contour = wrapped<double>(torus_image<3>({12, 16, 10}, [](const auto& x) { return waves_from<3>(x, 0, 0.0); }),
+                                 all_periodic<3>(), 0.0, options);
+  Attribute& of_vertices = contour.vertex_attributes.emplace_back(Attribute{"y", "", 1, {}});
+  for (const auto& x : contour.vertices) of_vertices.values.push_back(std::cos(kTurn * x[1]));
+  Attribute& of_simplices = contour.simplex_attributes.emplace_back(Attribute{"number", "", 1, {}});
+  for (std::size_t s = 0; s < contour.simplices.size(); ++s) of_simplices.values.push_back(static_cast<double>(s));
+  const auto cut = slice(contour, Hyperplane<3>::across(0, 0.99));  // in the last layer, beside the seam
+  ASSERT_GT(cut.simplices.size(), 10u);
+  ASSERT_EQ(cut.normals.size(), cut.vertices.size());
+  ASSERT_EQ(cut.vertex_attributes[0].values.size(), cut.vertices.size());
+  for (std::size_t v = 0; v < cut.vertices.size(); ++v)
+    EXPECT_NEAR(cut.vertex_attributes[0].values[v], std::cos(kTurn * cut.vertices[v][0]), 0.05);
+  ASSERT_EQ(cut.simplex_attributes[0].values.size(), cut.simplices.size());
+  for (const double s : cut.simplex_attributes[0].values) {
+    double least = 1.0;
+    for (const Index v : contour.simplices[static_cast<std::size_t>(s)])
+      least = std::min(least, std::abs(0.99 - contour.vertices[v][0]));
+    EXPECT_LT(least, 0.1);
+  }
+}
+
+TEST(PeriodicCuts, CutsOfCurvedGridsAcrossAPeriodDoNotDependOnTheFirstColumn) {
+  // the columns are oblique and bent: cells of the last one reach far over the longitudes of the first one
+  constexpr int kColumns = 36, kRows = 12, kLayers = 6;
+  const auto stored_from = [](int first) {
+    OwnedImage<double, 3> image;
+    image.grid = Grid<3>::unit({kColumns, kRows, kLayers});
+    std::vector<CurvedAxis> curved = {{0, 3, {}, "lon", "degrees_east"}, {1, 3, {}, "lat", "degrees_north"}};
+    for (int k = 0; k < kLayers; ++k)
+      for (int j = 0; j < kRows; ++j)
+        for (int i = first; i < first + kColumns; ++i) {
+          const double lon = 10.0 * i + 4.0 * j + 3.0 * std::sin(0.9 * j);
+          const double lat = -60.0 + 10.0 * j + 2.0 * std::sin(kTurn * i / kColumns);
+          const double turn = lon * kTurn / 360.0;
+          image.values.push_back(std::sin(turn + 0.3) + 0.5 * std::cos(3.0 * turn) + 0.02 * lat - 0.3 * k + 0.6);
+          if (k > 0) continue;
+          curved[0].values.push_back(lon);
+          curved[1].values.push_back(lat);
+        }
+    const std::vector<int> axes = {0};
+    const auto seams = find_seams<3>(image.grid, curved, axes);
+    return extract_curved<double>(image.view(), curved, 0.0, {}, seams);
+  };
+  const auto contour = stored_from(0), other = stored_from(13);
+  for (double at = 1.0; at < 360.0; at += 19.0) {
+    const auto cut = slice(contour, Hyperplane<3>::across(0, at));
+    const auto expected = slice(other, Hyperplane<3>::across(0, at));
+    EXPECT_EQ(check(cut).bad_links, 0u);
+    EXPECT_TRUE(cut.periods.empty());
+    EXPECT_EQ(check(cut).boundary_simplices, check(expected).boundary_simplices) << at;
+    EXPECT_EQ(check(cut).components, check(expected).components) << at;
+    EXPECT_NEAR(measure(cut).size, measure(expected).size, 1e-9) << at;
+    EXPECT_GT(measure(cut).size, 1.0);
+    EXPECT_NEAR(measure(slice(contour, Hyperplane<3>::across(0, at - 720.0))).size, measure(cut).size, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace tegl::test
