@@ -150,7 +150,7 @@ template <int N>
 void unroll_axes(const std::vector<Period<N>>& periods, CutSpace& space) {
   for (int a = 0; a < N; ++a) {
     CutAxis& axis = space.axes[static_cast<std::size_t>(a)];
-    axis = unrolled_axis(std::move(axis), a, periods);
+    axis = wrapped_axis(std::move(axis), a, periods);
   }
 }
 
@@ -159,7 +159,7 @@ std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::jo
 }  // namespace
 
 template <int N>
-CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
+CutAxis wrapped_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
   const auto at = static_cast<std::size_t>(a);
   std::vector<Vector<N>> vectors;
   double before = 0.0, after = 0.0;  // `unroll` moves simplices to the end of the period
@@ -183,9 +183,9 @@ CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods
   return axis;
 }
 
-template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<3>>&);
-template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<4>>&);
-template CutAxis unrolled_axis(CutAxis, int, const std::vector<Period<5>>&);
+template CutAxis wrapped_axis(CutAxis, int, const std::vector<Period<3>>&);
+template CutAxis wrapped_axis(CutAxis, int, const std::vector<Period<4>>&);
+template CutAxis wrapped_axis(CutAxis, int, const std::vector<Period<5>>&);
 
 double within_period(const CutAxis& axis, double place) {
   if (!(axis.period > 0.0) || (place >= axis.first && place <= axis.last)) return place;

@@ -66,7 +66,7 @@ std::optional<std::size_t> take_period(CutAxis& axis, std::span<const Vector<N>>
 /// The axis of a wrapped contour: periodic if a period is along it, otherwise with the range of the unrolled contour.
 /// `axis`: with the range of the wrapped contour. N is 3 to 5.
 template <int N>
-CutAxis unrolled_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods);
+CutAxis wrapped_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods);
 
 /// A place on an axis; if it is outside of the axis's range, moved there by periods.
 double within_period(const CutAxis& axis, double place);
