@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "base/workers.hpp"
-#include "mesh/validate.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl {
@@ -246,7 +245,6 @@ class Mover {
 template <int N, class Real>
 Contour<N, Real> moved_to_places(const Contour<N, Real>& contour, std::size_t period, int axis,
                                  std::span<const double> places, const WorkOptions& work) {
-  require_sound(contour);
   return Mover<N, Real>(contour, period, axis, places, work).run(period);
 }
 

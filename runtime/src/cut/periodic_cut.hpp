@@ -36,7 +36,7 @@ bool crosses(const HyperplaneFamily<N>& family, const Period<N>& period) {
 struct CrossedPeriods {
   std::size_t count = 0;   ///< how many they cross
   std::size_t period = 0;  ///< the last of these
-  bool is_modulo = false;  ///< whether they are across an axis and it is along this: places are modulo this period
+  bool is_modulo = false;  ///< whether they are across an axis with this period along it: places are modulo it
 };
 
 template <int N>
@@ -58,8 +58,9 @@ double place_modulo(const HyperplaneFamily<N>& family, const Period<N>& period, 
 
 /// The simplices of a wrapped contour that touch places across an axis, moved there by multiples of one period. The
 /// result has the other periods. A simplex that touches places in several multiples is there several times. Simplices
-/// and vertices are in the order of the contour. `places`: coordinates rounded to Real, ascending. Throws as
-/// require_sound. O(#S + #V) time, plus O(c log c) for c simplices of the result; 8 #V bytes plus O(c) memory.
+/// and vertices are in the order of the contour. `places`: coordinates rounded to Real, ascending. The contour
+/// is one that require_sound accepts. O(#S + #V) time, plus O(c log c) for c simplices of the result; 8 #V bytes plus
+/// O(c) memory.
 template <int N, class Real>
 Contour<N, Real> moved_to_places(const Contour<N, Real>& contour, std::size_t period, int axis,
                                  std::span<const double> places, const WorkOptions& work);

@@ -269,6 +269,7 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
   if (const detail::CrossedPeriods crossed = detail::crossed_periods<N>(family, contour.periods); crossed.is_modulo) {
+    detail::require_sound(contour);
     const std::vector<double> places = {
         place_on_axis<Real>(family, contour.periods[crossed.period], hyperplane.offset)};
     return slice(detail::moved_to_places(contour, crossed.period, family.dropped_axis(), places,
