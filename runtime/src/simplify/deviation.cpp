@@ -526,6 +526,29 @@ double largest_of_samples(const ScaledSimplices<N>& from, const BoxTree<N>& tree
   return largest;
 }
 
+/// Blocks of kGrain simplices are measured in rounds: every 64th one first, then those half way between the earlier
+/// ones. The last round has half of all blocks.
+constexpr int kRounds = 7;
+
+/// Measures the simplices of one round, and raises result.least to the largest attained distance.
+template <int N>
+void measure_round(const DeviationInput<N>& measure, int round, unsigned threads, const Progress& progress,
+                   Deviation& result) {
+  constexpr std::size_t kApart = std::size_t{1} << (kRounds - 1);
+  const std::size_t size = measure.from.simplices.size(), blocks = (size + kGrain - 1) / kGrain;
+  const std::size_t begin = round == 0 ? 0 : kApart >> round, apart = round == 0 ? kApart : 2 * begin;
+  if (begin >= blocks) return;
+  for_each_block((blocks - begin + apart - 1) / apart, 1, threads, progress,
+                 [&] { return SimplexDeviation<N>(measure); },
+                 [&](std::size_t number, std::size_t, std::size_t, SimplexDeviation<N>& one) {
+                   const std::size_t first = (begin + number * apart) * kGrain, end = std::min(size, first + kGrain);
+                   double reached = 0.0;
+                   for (std::size_t s = first; s < end; ++s)
+                     result.of_from[s] = one.bound(static_cast<Index>(s), reached);
+                   raise(result.least, reached);
+                 });
+}
+
 template <int N>
 void measure_all(const ScaledSimplices<N>& from, const DeviationTarget<N>& target, double enough, unsigned threads,
                  const Progress& progress, Deviation& result) {
@@ -537,17 +560,18 @@ void measure_all(const ScaledSimplices<N>& from, const DeviationTarget<N>& targe
   result.least = vertices.find_largest(part_of(progress, 0.05, 0.08));
   result.least =
       largest_of_samples(from, tree, walk, vertices.near(), result.least, threads, part_of(progress, 0.08, 0.12));
-  enough = enough > 0.0 ? std::max(enough, kLeastShare * result.least) : result.least;
-  vertices.search_above(enough / kLooseness, part_of(progress, 0.12, 0.15));
-  const DeviationInput<N> measure{from, to, tree, open, gradients, neighbours, vertices.near(), enough, result.of_to};
-  for_each_block(
-      from.simplices.size(), kGrain, threads, part_of(progress, 0.15, 0.9),
-      [&] { return SimplexDeviation<N>(measure); },
-      [&](std::size_t, std::size_t first, std::size_t end, SimplexDeviation<N>& one) {
-        double reached = 0.0;
-        for (std::size_t s = first; s < end; ++s) result.of_from[s] = one.bound(static_cast<Index>(s), reached);
-        raise(result.least, reached);
-      });
+  const auto sufficient = [&] { return enough > 0.0 ? std::max(enough, kLeastShare * result.least) : result.least; };
+  vertices.search_above(sufficient() / kLooseness, part_of(progress, 0.12, 0.15));
+  DeviationInput<N> measure{from, to, tree, open, gradients, neighbours, vertices.near(), sufficient(), result.of_to};
+  const Progress whole = part_of(progress, 0.15, 0.9);
+  // The first rounds are small samples. They find larger distances, so that later ones need fewer close bounds.
+  double done = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    const double end = std::ldexp(1.0, round + 1 - kRounds);
+    measure.enough = sufficient();
+    measure_round(measure, round, threads, part_of(whole, done, end), result);
+    done = end;
+  }
   refine_largest(measure, result, threads, part_of(progress, 0.9, 1.0));
 }
 
