@@ -536,8 +536,15 @@ TEST(SimplifyErrors, CanBeCancelledAtAnyReport) {
     const std::size_t all = std::exchange(reports, 0);
     ASSERT_GE(all, 20u);
     for (last = 1; last <= all; last += all / 20, reports = 0) {
-      expect_error(ErrorCode::Cancelled, "cancelled", [&] { simplify(contour, options); });
-      EXPECT_EQ(reports, last);
+      bool is_cancelled = false;
+      try {
+        simplify(contour, options);
+      } catch (const Error& error) {
+        is_cancelled = error.code() == ErrorCode::Cancelled;
+      }
+      // Only the calling thread reports. Beside others its share of the work varies, so there may be fewer reports.
+      EXPECT_EQ(is_cancelled, reports == last) << threads << " threads, report " << last;
+      EXPECT_TRUE(is_cancelled || (threads > 1 && last > 1 && reports < last)) << threads << " threads, " << reports;
     }
   }
 }
