@@ -7,8 +7,12 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "errors.hpp"
 #include "tegl/check.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/measure.hpp"
@@ -113,6 +117,34 @@ TEST(PeriodicCuts, CutsBesideAnAxisWithRoundingOfTheFrameAreNotModulo) {
     EXPECT_FALSE(cuts_wrapped<3>(oblique.periods, Hyperplane<3>::across(axis, 0.31)));
     EXPECT_THROW((void)slice(oblique, Hyperplane<3>::across(axis, 0.31)), Error);
   }
+}
+
+TEST(PeriodicCuts, CoordinatesFarFromTheirPeriodAreErrors) {
+  const auto contour = wrapped<double>(
+      torus_image<3>({12, 16, 10}, [](const auto& x) { return waves_from<3>(x, 0, 0.0); }), all_periodic<3>(), 0.05);
+  for (const double far : {1e12, -1e12, 1e300}) {
+    auto hostile = contour;
+    hostile.vertices[contour.simplices[7][1]][2] = far;
+    const std::string message =
+        "vertex " + std::to_string(contour.simplices[7][1]) + " has the coordinate " + fmt::format("{}", far) +
+        " along axis 2, with the period 1 from 0; expected at most 536870912 periods from there";
+    expect_error(ErrorCode::InvalidArgument, message, [&] { (void)slice(hostile, Hyperplane<3>::across(2, 0.3)); });
+    expect_error(ErrorCode::InvalidArgument, message, [&] { (void)measure_cuts(hostile, {0.3, 0.4}); });
+    EXPECT_GT(slice(hostile, Hyperplane<3>::across(0, 0.3)).simplices.size(), 10u);  // across another axis
+  }
+  // the period's dual vector does not matter
+  auto other = contour;
+  other.periods[2].dual = {1e9, 1e9, 1.0};
+  EXPECT_EQ(slice(other, Hyperplane<3>::across(2, 0.3)).vertices,
+            slice(contour, Hyperplane<3>::across(2, 0.3)).vertices);
+  // a start far from 0 is sound
+  auto far = contour;
+  constexpr double kStart = 1LL << 33;
+  for (auto& vertex : far.vertices) vertex[2] += kStart;
+  far.periods[2].start += kStart;
+  const auto cut = slice(far, Hyperplane<3>::across(2, kStart + 5.25));
+  EXPECT_TRUE(is_closed(check(cut)));
+  EXPECT_NEAR(measure(cut).size, measure(slice(contour, Hyperplane<3>::across(2, 0.25))).size, 1e-3);
 }
 
 TEST(PeriodicCuts, CutsAcrossAPeriodKeepAttributesAndNormals) {
