@@ -49,6 +49,18 @@ def without_longitude_and_latitude(data):
     return data.drop_vars(list(_longitude_and_latitude(data).values())) if is_xarray(data) else data
 
 
+def without_replaced(data, coords: list):
+    """An xarray without its coordinates of a curved grid, if `coords` has others for both of their axes."""
+    curved = _longitude_and_latitude(data) if is_xarray(data) and len(coords) == data.ndim else {}
+    given = [axis for axis in curved if coords[axis] is not None]
+    if 0 < len(given) < len(curved):
+        others = [axis for axis in curved if axis not in given]
+        raise ValueError(f"coords[{given[0]}], but not coords[{others[0]}], of an xarray with the coordinates "
+                         f"{' and '.join(map(repr, curved.values()))} of a curved grid along both axes; expected both, in "
+                         "place of these, or None for both")
+    return without_longitude_and_latitude(data) if given else data
+
+
 def own_curved(data) -> dict[int, np.ndarray]:
     """The coordinates of a curved grid, by axis, of an image of tegl.read or an xarray."""
     if not is_xarray(data):
