@@ -447,8 +447,10 @@ def listed_coords(coords) -> list:
 
 
 def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=None, axis_names=None, axis_units=None,
-            time_axis=None, allow_curved: bool = False, allow_lattice: bool = False) -> Prepared:
-    """The library's view of an array. Values are copied only if the type or a mask requires it."""
+            time_axis=None, hidden: np.ndarray | None = None, allow_curved: bool = False,
+            allow_lattice: bool = False) -> Prepared:
+    """The library's view of an array. Values are copied only if the type or a mask requires it. `hidden`: True for other
+    samples that are missing; of another shape, it is left out of account."""
     if not allow_curved and own_curved(data):
         raise ValueError("an image with a curved grid, which only tegl.contour and tegl.filter know; expected "
                          f"{without_curved(data)}, with "
@@ -493,6 +495,8 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
     array = _values(array)
     if mask is not None:
         array = _masked(array, mask if labelled is None or not is_xarray(mask) else in_order(mask, labelled))
+    if hidden is not None and hidden.ndim == ndim and all(n in (1, size) for n, size in zip(hidden.shape, array.shape)):
+        array = _masked(array, np.broadcast_to(~hidden, array.shape))
     if coords is None:
         coords = known if spacing is None and origin is None else None
     elif len(coords := listed_coords(coords)) != ndim:

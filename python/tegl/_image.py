@@ -119,7 +119,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Or an array of the shape (..., N), whose last
         axis has the coordinates of each sample, as of VTK's structured grids. float32 and float64 in C order (with
         `time_axis=-1` in Fortran order) are read in place; coordinates of a sample side by side in memory take less time. For
-        several contours: a `tegl.CurvedGrid`. Default: the image's own, from `tegl.read`, and
+        several contours: a `tegl.CurvedGrid`. Samples without a coordinate, by the mask of a masked array, are missing. Default: the image's own, from `tegl.read`, and
         the longitude and latitude in two dimensions of an xarray, unless `spacing`, `origin`, `affine`, or `coords` for the
         axes of both are given in their place. Longitudes (by `axis_units`, degrees_east) are continued
         across 180 degrees, in a copy if they must be. See docs/other-tilings.md.
@@ -140,7 +140,8 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         coords = _arguments.listed_coords(coords)
         array = _arguments.without_replaced(array, coords)
     prepared = _prepared_on(lattice, array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                            axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
+                            axis_names=axis_names, axis_units=axis_units, time_axis=time_axis,
+                            hidden=None if curved is None else _curved.masked_samples(curved), allow_curved=True)
     if level is None and positions != "relaxed":
         raise TypeError("level is missing; expected a number, such as tegl.contour(array, 0.5)")
     if level is None:
@@ -162,10 +163,10 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     periodic = _periods.given_or_none(periodic)
-    of_samples = [] if curved is None else _curved.coordinates_of(curved, prepared)
+    of_samples, no_place = ([], "") if curved is None else _curved.coordinates_of(curved, prepared)
     if curved is not None:
         _refuse_other_coordinates([one[0] for one in of_samples], prepared, spacing, origin, coords, affine, instead)
-    with prepared.terms():
+    with _curved.naming(no_place), prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic),
                                           ("samples" if of_cells else "positions",
                                            None if positions == "linear" and not of_cells else positions),

@@ -9,7 +9,8 @@ from . import _tegl
 
 INDEX_SUFFIX = "_index"  #: of the dimensions of an xarray with the coordinates of a curved grid
 TIME_NAMES = ("t", "time")
-_NORTH = ("degrees_north", "degree_north", "degree_N", "degrees_N", "degreeN", "degreesN")
+#: units of latitudes
+NORTH = ("degrees_north", "degree_north", "degree_N", "degrees_N", "degreeN", "degreesN")
 
 
 def is_xarray(data: object) -> bool:
@@ -35,7 +36,7 @@ def _longitude_and_latitude(data) -> dict[int, object]:
         return [name for name, one in data.coords.items() if one.ndim >= 2 and is_unit(str(one.attrs.get("units", "")))]
 
     for lon in of_unit(_tegl.is_longitude_unit):
-        for lat in of_unit(_NORTH.__contains__):
+        for lat in of_unit(NORTH.__contains__):
             dims = data.coords[lon].dims
             free = [axis for axis, dim in enumerate(data.dims)
                     if dim in dims and dim not in data.coords and str(dim).lower() not in TIME_NAMES]
