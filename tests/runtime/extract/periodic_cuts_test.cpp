@@ -171,6 +171,56 @@ TEST(PeriodicCuts, CutsAcrossAPeriodKeepAttributesAndNormals) {
   }
 }
 
+template <int N>
+std::array<double, N> gradient_of_waves(const std::array<double, N>& x) {
+  std::array<double, N> gradient{};
+  for (int a = 0; a < N; ++a) gradient[a] = (0.5 + 0.1 * a) * kTurn * std::cos(kTurn * x[a] + a);
+  const double oblique = 0.4 * kTurn * std::sin(kTurn * (x[0] - x[N - 1]));
+  gradient[0] -= oblique;
+  gradient[N - 1] += oblique;
+  return gradient;
+}
+
+TEST(PeriodicCuts, NormalsOfCutsAcrossAPeriodHaveTheDirectionOfTheGradientWithinTheHyperplane) {
+  const auto test = []<int N>(const std::array<std::size_t, N>& sizes, double least) {
+    const auto image = torus_image<N>(sizes, [](const std::array<double, N>& x) { return waves_from<N>(x, 0, 0.0); });
+    for (const GradientDirection direction : {GradientDirection::descent, GradientDirection::ascent}) {
+      ExtractOptions options;
+      options.normals = Normals::differences;
+      options.direction = direction;
+      const auto contour = wrapped<double>(image, all_periodic<N>(), 0.05, options);
+      const double sign = direction == GradientDirection::descent ? -1.0 : 1.0;
+      for (int axis = 0; axis < N; ++axis)
+        for (const double at : {0.0, 0.31, 0.99, 1.995, -7.003}) {
+          SCOPED_TRACE(testing::Message() << "axis " << axis << ", " << at);
+          const auto cut = slice(contour, Hyperplane<N>::across(axis, at));
+          ASSERT_EQ(cut.normals.size(), cut.vertices.size());
+          std::size_t compared = 0;
+          for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
+            std::array<double, N> x;
+            for (int a = 0, in_cut = 0; a < N; ++a) x[a] = a == axis ? at : cut.vertices[v][in_cut++];
+            const auto gradient = gradient_of_waves<N>(x);
+            double inner = 0.0, length = 0.0, unit = 0.0;
+            for (int a = 0, in_cut = 0; a < N; ++a) {
+              if (a == axis) continue;
+              const double normal = cut.normals[v][in_cut++];
+              inner += sign * normal * gradient[a];
+              length += gradient[a] * gradient[a];
+              unit += normal * normal;
+            }
+            EXPECT_NEAR(unit, 1.0, 1e-6);
+            if (length < 1.0) continue;  // beside points at which the contour touches the hyperplane
+            EXPECT_GT(inner / std::sqrt(length), least);
+            ++compared;
+          }
+          EXPECT_GT(compared, cut.vertices.size() / 2);
+        }
+    }
+  };
+  test.template operator()<3>({40, 48, 36}, 0.998);
+  test.template operator()<4>({20, 18, 22, 16}, 0.985);
+}
+
 TEST(PeriodicCuts, CutsOfCurvedGridsAcrossAPeriodDoNotDependOnTheFirstColumn) {
   // the columns are oblique and bent: cells of the last one reach far over the longitudes of the first one
   constexpr int kColumns = 36, kRows = 12, kLayers = 6;
