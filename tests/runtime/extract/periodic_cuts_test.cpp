@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -116,6 +117,47 @@ TEST(PeriodicCuts, CutsBesideAnAxisWithRoundingOfTheFrameAreNotModulo) {
   for (const int axis : {0, 1}) {
     EXPECT_FALSE(cuts_wrapped<3>(oblique.periods, Hyperplane<3>::across(axis, 0.31)));
     EXPECT_THROW((void)slice(oblique, Hyperplane<3>::across(axis, 0.31)), Error);
+  }
+}
+
+TEST(PeriodicCuts, ManyMeasuredCutsAreThoseOfSlices) {
+  const auto image = torus_image<4>({8, 6, 10, 8}, [](const auto& x) { return waves_from<4>(x, 0, 0.0); });
+  for (const unsigned axes : {15u, 8u, 7u}) {
+    SCOPED_TRACE(axes);
+    const auto contour = wrapped<float>(image, periodic_along<4>(axes), 0.05);
+    std::vector<double> places;  // in no order, and some of them equal modulo the period
+    for (int i = 0; i < 700; ++i) places.push_back(std::fmod(i * 0.618033988749, 1.0));
+    places.insert(places.end(), {0.0, 0.25, 1.25, 0.25, -3.0, 7.0});
+    const std::vector<CutMeasures> found = measure_cuts(contour, places, {1, {}});
+    ASSERT_EQ(found.size(), places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      EXPECT_EQ(found[i].at, places[i]);
+      if (i % 13 != 0 && i < 700) continue;
+      const auto expected = measure(slice(contour, Hyperplane<4>::across(3, places[i])));
+      EXPECT_EQ(found[i].size, expected.size) << places[i];
+      EXPECT_EQ(found[i].content, expected.content) << places[i];
+    }
+    for (const std::size_t count : {places.size(), std::size_t{2}}) {  // with more threads than cuts, too
+      const auto others = measure_cuts(contour, std::span(places).first(count), {3, {}});
+      for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_EQ(others[i].size, found[i].size);
+        EXPECT_EQ(others[i].content, found[i].content);
+      }
+    }
+    EXPECT_TRUE(measure_cuts(contour, {}).empty());
+    double last = 0.0;
+    std::size_t reports = 0;
+    (void)measure_cuts(contour, places, {1, [&](double done) {
+                                           EXPECT_GE(done, last);
+                                           EXPECT_LT(done - last, 0.2);
+                                           last = done;
+                                           return ++reports > 0;
+                                         }});
+    EXPECT_EQ(last, 1.0);
+    EXPECT_GT(reports, 100u);
+    expect_error(ErrorCode::Cancelled, "cancelled", [&] {
+      (void)measure_cuts(contour, places, {2, [](double done) { return done < 0.5; }});
+    });
   }
 }
 
