@@ -310,6 +310,11 @@ def test_xarrays_keep_the_coordinates_of_a_curved_grid():
                 tegl.contour(values.transpose(0, 2, 1)[:, :, :12], 0.0, axis_names=("time", "y", "x"),
                              axis_units=("s", "m", "m"), curved={2: curved[1].transpose(0, 2, 1)[:, :, :12],
                                                                  1: curved[2].transpose(0, 2, 1)[:, :, :12]}))
+    with pytest.raises(ValueError, match=r"coords\[1\] with a curved grid along this axis; expected None for it, or "
+                                         r"drop_vars\(\['x', 'y'\]\) in place of the image"):
+        tegl.contour(data, 0.0, coords=[None, range(20), range(10)])
+    with pytest.raises(ValueError, match="spacing with a curved grid.*None for each curved axis, or its `array` in place of the image"):
+        tegl.contour(image, 0.0, spacing=2.0)
     with pytest.raises(ValueError, match="an image with a curved grid"):
         tegl.slice(data, 0.0, at=0.5)
 
@@ -343,6 +348,20 @@ def test_xarrays_with_longitude_and_latitude_in_two_dimensions_are_curved():
     indices = tegl.contour(data.drop_vars(["TLAT", "TLONG"]), 0.0)
     assert_same(indices, tegl.contour(values, 0.0))
     assert_same(tegl.contour(data, 0.0, spacing=1.0), indices)
+    # coordinates of both dimensions in place of longitude and latitude
+    i, j = np.arange(36) * 2.0, np.arange(20) * 1.0
+    for coords in ([None, j, i], (range(3), list(j), i)):
+        given = tegl.contour(data, 0.0, coords=coords)
+        assert given.axis_names == ("time", "j", "i")
+        assert_same(given, tegl.contour(straight, 0.0))
+    assert_same(tegl.contour(data, 0.0, coords=[np.arange(3.0), None, None]), contour)
+    with pytest.raises(ValueError, match=r"coords\[2\], but not coords\[1\], of an xarray with the coordinates 'TLAT' and 'TLONG' "
+                                         "of a curved grid along both axes; expected both, in place of these, or None for both"):
+        tegl.contour(data, 0.0, coords=[None, None, i])
+    with pytest.raises(ValueError, match=r"coords\[1\] with a curved grid along this axis; expected None for it$"):
+        tegl.contour(data, 0.0, coords=[None, j, i], curved=curved)
+    with pytest.raises(ValueError, match="coords has 2 entries; expected one for each of 3 axes"):
+        tegl.contour(data, 0.0, coords=[j, i])
     assert tegl.contour(data[:, 14], 2.5).axis_names == ("time", "i")  # no longer in two dimensions
     with pytest.raises(ValueError, match=r"a curved grid.*expected drop_vars\(\['TLAT', 'TLONG'\]\)"):
         tegl.slice(data, 0.0, at=0.5)

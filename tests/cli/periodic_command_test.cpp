@@ -512,8 +512,15 @@ TEST_F(PeriodicCommand, AxesOfFilesAreNamedByDimensionLetterOrUnit) {
   // a name counts more than a letter, and lon is no name without a unit of longitudes
   const std::string crossed = write_globe("y", "");
   EXPECT_EQ(components(crossed, "y"), 1);
-  EXPECT_EQ(components(crossed, "x"), 1);
+  // as of --at: an axis that is named by another letter has no other one
+  expect_refused_of(crossed, {"--periodic", "x", "-o", output},
+                    "--periodic x names no axis; expected one of y, yt_ocean, or all, auto or none");
   expect_refused_of(crossed, {"--periodic", "lon", "-o", output}, "--periodic lon names no axis; expected one of y, ");
+  const std::string beside = write_globe("z", "");
+  EXPECT_EQ(components(beside, "z"), 1);
+  expect_refused_of(beside, {"--periodic", "x", "-o", output},
+                    "--periodic x names no axis; expected one of z, yt_ocean, or y for yt_ocean, or all, auto or none");
+  expect_refused_of(beside, {"--periodic", "y,y", "-o", output}, "--periodic names the axis y twice");
 }
 
 TEST_F(PeriodicCommand, LongitudesAreFoundByTheirUnitAndSpan) {

@@ -107,8 +107,7 @@ class Mover {
         shares_(contour.vertices.size()) {}
 
   Contour<N, Real> run(std::size_t period) {
-    for_each_item(shares_.size(), work_.threads, {},
-                  [&](std::size_t v) { shares_[v] = share_of(period_, widened_point<N>(contour_.vertices[v])); });
+    find_shares();
     find_simplices();
     number_vertices();
     Contour<N, Real> result = moved();
@@ -126,21 +125,36 @@ class Mover {
   };
 
   static constexpr std::int64_t kZero = std::int64_t{1} << 31;  ///< the lower half of the key of a vertex that stays
-  static constexpr std::size_t kBlock = std::size_t{1} << 14;   ///< simplices of a part of the work
+  static constexpr std::int64_t kFarthest = kZero / 4;  ///< of a vertex from the first period, so that keys have room
+  static constexpr std::size_t kBlock = std::size_t{1} << 14;  ///< simplices of a part of the work
 
   static Key key_of(Index vertex, std::int64_t times) { return Key{vertex} << 32 | static_cast<Key>(times + kZero); }
   static Index vertex_of(Key key) { return static_cast<Index>(key >> 32); }
   static double times_of(Key key) { return static_cast<double>(static_cast<std::int64_t>(key & 0xffffffffu) - kZero); }
-  /// Contours whose coordinates are far from their periods are not sound, but must not overflow.
-  static std::int64_t whole(double times) {
-    constexpr double kMost = 1 << 29;
-    return static_cast<std::int64_t>(std::clamp(times, -kMost, kMost));
-  }
+  static std::int64_t whole(double times) { return static_cast<std::int64_t>(times); }
 
   /// The coordinate along `axis` of a vertex that is moved.
   [[nodiscard]] Real coordinate(Index v, double times, int axis) const {
     const Real x = contour_.vertices[v][axis];
     return times == 0.0 ? x : static_cast<Real>(static_cast<double>(x) + times * period_.vector[axis]);
+  }
+
+  /// By the axis, along which the period is: so corners that are moved next to each other are within a period, whatever
+  /// the period's dual vector is.
+  void find_shares() {
+    const double along = period_.vector[axis_];
+    for_each_item(shares_.size(), work_.threads, {},
+                  [&](std::size_t v) { shares_[v] = static_cast<double>(contour_.vertices[v][axis_]) / along; });
+    const auto far = std::find_if_not(shares_.begin(), shares_.end(), [&](double share) {
+      return std::abs(share - period_.start) <= static_cast<double>(kFarthest);
+    });
+    if (far == shares_.end()) return;
+    const auto v = static_cast<std::size_t>(far - shares_.begin());
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("vertex {} has the coordinate {} along axis {}, with the period {} from {}; expected at most "
+                    "{} periods from there",
+                    v, contour_.vertices[v][axis_], axis_, std::abs(along), period_.start * along, kFarthest));
   }
 
   void find_simplices() {

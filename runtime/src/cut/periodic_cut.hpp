@@ -59,8 +59,8 @@ double place_modulo(const HyperplaneFamily<N>& family, const Period<N>& period, 
 /// The simplices of a wrapped contour that touch places across an axis, moved there by multiples of one period. The
 /// result has the other periods. A simplex that touches places in several multiples is there several times. Simplices
 /// and vertices are in the order of the contour. `places`: coordinates rounded to Real, ascending. The contour
-/// is one that require_sound accepts. O(#S + #V) time, plus O(c log c) for c simplices of the result; 8 #V bytes plus
-/// O(c) memory.
+/// is one that require_sound accepts. InvalidArgument if a vertex is far from the period. O(#S + #V) time, plus O(c log
+/// c) for c simplices of the result; 8 #V bytes plus O(c) memory.
 template <int N, class Real>
 Contour<N, Real> moved_to_places(const Contour<N, Real>& contour, std::size_t period, int axis,
                                  std::span<const double> places, const WorkOptions& work);

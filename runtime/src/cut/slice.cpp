@@ -12,6 +12,7 @@
 #include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "cut/closed_cut.hpp"
+#include "cut/each_cut.hpp"
 #include "cut/periodic_cut.hpp"
 #include "cut/vertex_range.hpp"
 #include "mesh/validate.hpp"
@@ -322,10 +323,51 @@ requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack
   return cuts;
 }
 
+template <int N, class Real>
+void detail::for_each_cut(const Contour<N, Real>& contour, std::span<const double> at, const WorkOptions& work,
+                          UseCut<N, Real> use) {
+  constexpr std::size_t kTogether = 256;  // levels whose simplices are listed at a time
+  std::vector<Hyperplane<N>> hyperplanes;
+  for (const double t : at) hyperplanes.push_back(Hyperplane<N>::across(N - 1, t));
+  std::vector<Parallels<N, Real>> groups;
+  const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, groups);
+  detail::require_sound(contour);
+  if (groups.empty()) return;
+  Parallels<N, Real>& group = groups.front();
+  const std::vector<double>& all = group.levels;
+  std::vector<std::vector<std::size_t>> places(all.size());
+  for (std::size_t i = 0; i < stack.size(); ++i)
+    places[static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), stack[i].level) - all.begin())].push_back(
+        i);
+  if (group.crossed.is_modulo) move_to_levels(contour, group, work.threads);
+  detail::tell(work.progress, 0.1, kCancelledSlice);
+  const Contour<N, Real>& moved = group.of(contour);
+  struct Nothing {};
+  const std::size_t threads = detail::Workers<Nothing>(work.threads, [] { return Nothing(); }).count();
+  for (std::size_t first = 0; first < all.size(); first += kTogether) {
+    const std::size_t count = std::min(all.size() - first, kTogether);
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    const TouchingSimplices touching =
+        touching_levels(moved, group.family, {begin, begin + static_cast<std::ptrdiff_t>(count)}, work.threads);
+    const auto done = [&](std::size_t i) {
+      return 0.1 + 0.9 * static_cast<double>(i) / static_cast<double>(all.size());
+    };
+    const unsigned inside = count < threads ? work.threads : 1;
+    detail::for_each_block(
+        count, 1, count < threads ? 1 : work.threads, detail::part_of(work.progress, done(first), done(first + count)),
+        [&](std::size_t i, std::size_t, std::size_t) {
+          use(places[first + i], detail::cut_simplices(moved, group.family, all[first + i], touching.of(i), inside),
+              inside);
+        });
+  }
+}
+
 #define TEGL_INSTANTIATE_SLICE(N, Real)                                                                           \
   template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&, const WorkOptions&);         \
   template std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>&, std::span<const Hyperplane<N>>, \
-                                                         const WorkOptions&);
+                                                         const WorkOptions&);                                     \
+  template void detail::for_each_cut(const Contour<N, Real>&, std::span<const double>, const WorkOptions&,        \
+                                     UseCut<N, Real>);
 TEGL_INSTANTIATE_SLICE(3, float)
 TEGL_INSTANTIATE_SLICE(3, double)
 TEGL_INSTANTIATE_SLICE(4, float)

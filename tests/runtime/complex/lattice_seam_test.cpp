@@ -25,6 +25,7 @@
 #include "lattice/lattice_in_time.hpp"
 #include "lattice/periodic_lattice.hpp"
 #include "periodic/periodic_layers.hpp"
+#include "tegl/facet_hierarchy.hpp"
 #include "tegl/lattice.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/slice.hpp"
@@ -350,6 +351,100 @@ TEST(LatticeSeam, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
   test.operator()<3>(Lattice::bcc, {8, 8, 16});
   test.operator()<4>(Lattice::d4, {8, 8, 8, 8});
   test.operator()<4>(Lattice::fcc_in_time, {8, 8, 8, 8});
+}
+
+using Place4 = std::array<std::int64_t, 4>;
+
+/// The places of vertices modulo periods of 1, moved by `by`, as whole numbers.
+std::vector<Place4> places_moved(const Buffer<std::array<double, 4>>& vertices, const std::array<double, 4>& by) {
+  constexpr std::int64_t kParts = 1'000'000;
+  std::vector<Place4> places;
+  for (const auto& vertex : vertices) {
+    Place4& place = places.emplace_back();
+    for (int a = 0; a < 4; ++a) place[a] = (std::llround((vertex[a] + by[a]) * kParts) % kParts + kParts) % kParts;
+  }
+  return places;
+}
+
+/// The contour's polyhedra in the cells, by the places of their points.
+std::set<std::set<Place4>> polyhedra_of(const FacetHierarchy<4, double>& facets, const std::array<double, 4>& by) {
+  const std::vector<Place4> places = places_moved(facets.vertices, by);
+  std::set<std::set<Place4>> polyhedra;
+  for (std::size_t f = 0; f < facets.count(3); ++f) {
+    std::set<Place4> points;
+    for (const Index p : facets.points_of(3, f)) points.insert(places[p]);
+    EXPECT_TRUE(polyhedra.insert(points).second);
+  }
+  return polyhedra;
+}
+
+/// Simplices whose points on edges are not all in one polyhedron.
+std::size_t count_beyond_polyhedra(const Contour<4, double>& contour, const std::vector<Place4>& places,
+                                   const std::set<std::set<Place4>>& polyhedra) {
+  std::map<Place4, std::vector<const std::set<Place4>*>> at;
+  for (const std::set<Place4>& polyhedron : polyhedra)
+    for (const Place4& point : polyhedron) at[point].push_back(&polyhedron);
+  return static_cast<std::size_t>(
+      std::count_if(contour.simplices.begin(), contour.simplices.end(), [&](const auto& simplex) {
+        std::set<Place4> points;
+        for (const Index v : simplex)
+          if (at.contains(places[v])) points.insert(places[v]);  // others are inside of a cell
+        if (points.empty()) return false;
+        const auto& beside = at.at(*points.begin());
+        return std::none_of(beside.begin(), beside.end(), [&](const std::set<Place4>* each) {
+          return std::includes(each->begin(), each->end(), points.begin(), points.end());
+        });
+      }));
+}
+
+TEST(LatticeSeam, CompactContoursOfMovedSamplesOnD4DifferInDiagonalsOnly) {
+  constexpr std::array<std::size_t, 4> kSizes = {8, 8, 8, 8}, kMoved = {3, 1, 2, 4};  // layers by an even number
+  constexpr double kIsovalue = 0.05;
+  const auto image = sampled_on_lattice<4>(Lattice::d4, grid_of_torus<4>(kSizes), [](auto x, const auto&, const auto&) {
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    double sum = 0.4 * std::cos(kTurn * (x[0] - x[3]));
+    for (int a = 0; a < 4; ++a) sum += (0.5 + 0.1 * a) * std::sin(kTurn * x[a] + a);
+    return sum;
+  });
+  OwnedImage<double, 4> moved = image;
+  std::array<double, 4> by{};
+  for (int a = 0; a < 4; ++a) by[a] = static_cast<double>(kMoved[a]) / 8.0;
+  std::size_t i = 0;
+  detail::for_each_sample<4>(kSizes, [&](std::array<std::size_t, 4> index) {
+    for (int a = 0; a < 4; ++a) index[a] = (index[a] + kMoved[a]) % kSizes[a];
+    moved.values[i++] = image.view()(index);
+  });
+  const auto periods = periods_along<4>(15u);
+  const auto polyhedra = polyhedra_of(extract_facets<double>(image.view(), Lattice::d4, kIsovalue, {}, periods), {});
+  EXPECT_GT(polyhedra.size(), 1000u);
+  EXPECT_EQ(polyhedra, polyhedra_of(extract_facets<double>(moved.view(), Lattice::d4, kIsovalue, {}, periods), by));
+
+  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
+    const bool is_compact = triangulation == Triangulation::compact;
+    SCOPED_TRACE(is_compact ? "compact" : "barycentric");
+    ExtractOptions options;
+    options.triangulation = triangulation;
+    const auto a = extract_lattice<double>(image.view(), Lattice::d4, kIsovalue, options, periods);
+    const auto b = extract_lattice<double>(moved.view(), Lattice::d4, kIsovalue, options, periods);
+    auto places_a = places_moved(a.vertices, {}), places_b = places_moved(b.vertices, by);
+    EXPECT_EQ(count_beyond_polyhedra(a, places_a, polyhedra), 0u);
+    EXPECT_EQ(count_beyond_polyhedra(b, places_b, polyhedra), 0u);
+    std::sort(places_a.begin(), places_a.end());
+    std::sort(places_b.begin(), places_b.end());
+    EXPECT_EQ(places_a, places_b);
+    EXPECT_EQ(a.simplices.size() == b.simplices.size(), !is_compact);
+    // without diagonals, sizes are the same, those of cuts too
+    double farthest = std::abs(measure(a).size / measure(b).size - 1.0);
+    EXPECT_EQ(farthest < 1e-12, !is_compact) << farthest;
+    for (int axis = 0; axis < 4; ++axis)
+      for (const double place : {0.02, 0.13, 0.4, 0.77}) {
+        const double size = measure(slice(a, Hyperplane<4>::across(axis, place))).size;
+        const double of_moved = measure(slice(b, Hyperplane<4>::across(axis, place - by[axis]))).size;
+        farthest = std::max(farthest, std::abs(of_moved / size - 1.0));
+      }
+    EXPECT_LT(farthest, is_compact ? 0.05 : 1e-9);
+    EXPECT_EQ(farthest < 1e-9, !is_compact) << farthest;
+  }
 }
 
 TEST(LatticeSeam, RulesByTheDataGiveManifolds) {

@@ -7,8 +7,13 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
+#include "errors.hpp"
 #include "tegl/check.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/measure.hpp"
@@ -115,6 +120,75 @@ TEST(PeriodicCuts, CutsBesideAnAxisWithRoundingOfTheFrameAreNotModulo) {
   }
 }
 
+TEST(PeriodicCuts, ManyMeasuredCutsAreThoseOfSlices) {
+  const auto image = torus_image<4>({8, 6, 10, 8}, [](const auto& x) { return waves_from<4>(x, 0, 0.0); });
+  for (const unsigned axes : {15u, 8u, 7u}) {
+    SCOPED_TRACE(axes);
+    const auto contour = wrapped<float>(image, periodic_along<4>(axes), 0.05);
+    std::vector<double> places;  // in no order, and some of them equal modulo the period
+    for (int i = 0; i < 700; ++i) places.push_back(std::fmod(i * 0.618033988749, 1.0));
+    places.insert(places.end(), {0.0, 0.25, 1.25, 0.25, -3.0, 7.0});
+    const std::vector<CutMeasures> found = measure_cuts(contour, places, {1, {}});
+    ASSERT_EQ(found.size(), places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      EXPECT_EQ(found[i].at, places[i]);
+      if (i % 13 != 0 && i < 700) continue;
+      const auto expected = measure(slice(contour, Hyperplane<4>::across(3, places[i])));
+      EXPECT_EQ(found[i].size, expected.size) << places[i];
+      EXPECT_EQ(found[i].content, expected.content) << places[i];
+    }
+    for (const std::size_t count : {places.size(), std::size_t{2}}) {  // with more threads than cuts, too
+      const auto others = measure_cuts(contour, std::span(places).first(count), {3, {}});
+      for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_EQ(others[i].size, found[i].size);
+        EXPECT_EQ(others[i].content, found[i].content);
+      }
+    }
+    EXPECT_TRUE(measure_cuts(contour, {}).empty());
+    double last = 0.0;
+    std::size_t reports = 0;
+    (void)measure_cuts(contour, places, {1, [&](double done) {
+                                           EXPECT_GE(done, last);
+                                           EXPECT_LT(done - last, 0.2);
+                                           last = done;
+                                           return ++reports > 0;
+                                         }});
+    EXPECT_EQ(last, 1.0);
+    EXPECT_GT(reports, 100u);
+    expect_error(ErrorCode::Cancelled, "cancelled", [&] {
+      (void)measure_cuts(contour, places, {2, [](double done) { return done < 0.5; }});
+    });
+  }
+}
+
+TEST(PeriodicCuts, CoordinatesFarFromTheirPeriodAreErrors) {
+  const auto contour = wrapped<double>(
+      torus_image<3>({12, 16, 10}, [](const auto& x) { return waves_from<3>(x, 0, 0.0); }), all_periodic<3>(), 0.05);
+  for (const double far : {1e12, -1e12, 1e300}) {
+    auto hostile = contour;
+    hostile.vertices[contour.simplices[7][1]][2] = far;
+    const std::string message =
+        "vertex " + std::to_string(contour.simplices[7][1]) + " has the coordinate " + fmt::format("{}", far) +
+        " along axis 2, with the period 1 from 0; expected at most 536870912 periods from there";
+    expect_error(ErrorCode::InvalidArgument, message, [&] { (void)slice(hostile, Hyperplane<3>::across(2, 0.3)); });
+    expect_error(ErrorCode::InvalidArgument, message, [&] { (void)measure_cuts(hostile, {0.3, 0.4}); });
+    EXPECT_GT(slice(hostile, Hyperplane<3>::across(0, 0.3)).simplices.size(), 10u);  // across another axis
+  }
+  // the period's dual vector does not matter
+  auto other = contour;
+  other.periods[2].dual = {1e9, 1e9, 1.0};
+  EXPECT_EQ(slice(other, Hyperplane<3>::across(2, 0.3)).vertices,
+            slice(contour, Hyperplane<3>::across(2, 0.3)).vertices);
+  // a start far from 0 is sound
+  auto far = contour;
+  constexpr double kStart = 1LL << 33;
+  for (auto& vertex : far.vertices) vertex[2] += kStart;
+  far.periods[2].start += kStart;
+  const auto cut = slice(far, Hyperplane<3>::across(2, kStart + 5.25));
+  EXPECT_TRUE(is_closed(check(cut)));
+  EXPECT_NEAR(measure(cut).size, measure(slice(contour, Hyperplane<3>::across(2, 0.25))).size, 1e-3);
+}
+
 TEST(PeriodicCuts, CutsAcrossAPeriodKeepAttributesAndNormals) {
   ExtractOptions options;
   options.normals = Normals::differences;
@@ -137,6 +211,56 @@ TEST(PeriodicCuts, CutsAcrossAPeriodKeepAttributesAndNormals) {
       least = std::min(least, std::abs(0.99 - contour.vertices[v][0]));
     EXPECT_LT(least, 0.1);
   }
+}
+
+template <int N>
+std::array<double, N> gradient_of_waves(const std::array<double, N>& x) {
+  std::array<double, N> gradient{};
+  for (int a = 0; a < N; ++a) gradient[a] = (0.5 + 0.1 * a) * kTurn * std::cos(kTurn * x[a] + a);
+  const double oblique = 0.4 * kTurn * std::sin(kTurn * (x[0] - x[N - 1]));
+  gradient[0] -= oblique;
+  gradient[N - 1] += oblique;
+  return gradient;
+}
+
+TEST(PeriodicCuts, NormalsOfCutsAcrossAPeriodHaveTheDirectionOfTheGradientWithinTheHyperplane) {
+  const auto test = []<int N>(const std::array<std::size_t, N>& sizes, double least) {
+    const auto image = torus_image<N>(sizes, [](const std::array<double, N>& x) { return waves_from<N>(x, 0, 0.0); });
+    for (const GradientDirection direction : {GradientDirection::descent, GradientDirection::ascent}) {
+      ExtractOptions options;
+      options.normals = Normals::differences;
+      options.direction = direction;
+      const auto contour = wrapped<double>(image, all_periodic<N>(), 0.05, options);
+      const double sign = direction == GradientDirection::descent ? -1.0 : 1.0;
+      for (int axis = 0; axis < N; ++axis)
+        for (const double at : {0.0, 0.31, 0.99, 1.995, -7.003}) {
+          SCOPED_TRACE(testing::Message() << "axis " << axis << ", " << at);
+          const auto cut = slice(contour, Hyperplane<N>::across(axis, at));
+          ASSERT_EQ(cut.normals.size(), cut.vertices.size());
+          std::size_t compared = 0;
+          for (std::size_t v = 0; v < cut.vertices.size(); ++v) {
+            std::array<double, N> x;
+            for (int a = 0, in_cut = 0; a < N; ++a) x[a] = a == axis ? at : cut.vertices[v][in_cut++];
+            const auto gradient = gradient_of_waves<N>(x);
+            double inner = 0.0, length = 0.0, unit = 0.0;
+            for (int a = 0, in_cut = 0; a < N; ++a) {
+              if (a == axis) continue;
+              const double normal = cut.normals[v][in_cut++];
+              inner += sign * normal * gradient[a];
+              length += gradient[a] * gradient[a];
+              unit += normal * normal;
+            }
+            EXPECT_NEAR(unit, 1.0, 1e-6);
+            if (length < 1.0) continue;  // beside points at which the contour touches the hyperplane
+            EXPECT_GT(inner / std::sqrt(length), least);
+            ++compared;
+          }
+          EXPECT_GT(compared, cut.vertices.size() / 2);
+        }
+    }
+  };
+  test.template operator()<3>({40, 48, 36}, 0.998);
+  test.template operator()<4>({20, 18, 22, 16}, 0.985);
 }
 
 TEST(PeriodicCuts, CutsOfCurvedGridsAcrossAPeriodDoNotDependOnTheFirstColumn) {
