@@ -90,12 +90,14 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
 void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> without_periods) {
   app_ = &app;
   without_periods_ = std::move(without_periods);
-  options_.push_back(add_word_list(app, "--periodic", periodic_,
-                                   "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
-                                   "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
-                                   "for longitudes, or as in x=2.5; auto: longitudes that span 360 degrees; none: no "
-                                   "axis, and no remark on such longitudes")
-                         ->type_name("AXES"));
+  options_.push_back(
+      add_word_list(app, "--periodic", periodic_,
+                    "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
+                    "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
+                    "for longitudes, or as in x=2.5, in the axis's unit, more than twice each step; "
+                    "auto: longitudes that span 360 degrees; none: no axis, and no remark on such "
+                    "longitudes")
+          ->type_name("AXES"));
   options_.push_back(app.add_option("--lattice", lattice_,
                                     "samples on a staggered lattice: odd layers are shifted by half a step along the "
                                     "axes before; triangular (2D), fcc or bcc (3D), d4 or fcc_in_time (4D); cubic: on "
