@@ -34,8 +34,8 @@ std::string rings_vts(int layers, const std::string& of_cells = "") {
        << R"("><Piece Extent="0 23 0 5 0 )" << layers - 1
        << R"("><PointData><DataArray type="Float32" Name="radius" format="ascii">)" << values.str()
        << "</DataArray></PointData><CellData>" << of_cells
-       << R"(</CellData><Points><DataArray type="Float64" Name="p" NumberOfComponents="3" format="ascii">)" << points.str()
-       << "</DataArray></Points></Piece></StructuredGrid></VTKFile>";
+       << R"(</CellData><Points><DataArray type="Float64" Name="p" NumberOfComponents="3" format="ascii">)"
+       << points.str() << "</DataArray></Points></Piece></StructuredGrid></VTKFile>";
   return text.str();
 }
 
@@ -69,7 +69,8 @@ TEST_F(StructuredGrids, AreMeshesOrCurvedGridsWithTheSameContours) {
     const auto mesh = run_json({"contour", file, "-o", output});
     const auto open = run_json({"contour", file, "--curved-grid", "-o", output});
     for (const char* const count : {"vertices", "simplices"}) EXPECT_EQ(open[count], mesh[count]) << count;
-    const double size = run_json({"measure", file})["size"];  // between the last points of each ring and the first: none
+    const double size =
+        run_json({"measure", file})["size"];  // between the last points of each ring and the first: none
     EXPECT_NEAR(size, 2 * std::numbers::pi * 1.55 * 23 / 24 * (layers > 1 ? 1.5 : 1.0), 0.1);
     EXPECT_NEAR(run_json({"measure", file, "--curved-grid"})["size"].get<double>(), size, 1e-5 * size);
     for (const char* const axis : {"i", "x"}) {
@@ -85,10 +86,12 @@ TEST_F(StructuredGrids, AreMeshesOrCurvedGridsWithTheSameContours) {
 TEST_F(StructuredGrids, WhatACurvedGridCannotHaveIsRefused) {
   const std::string file = write("rings.vts", rings_vts(3));
   expect_refused(file, {"--periodic", "i"}, "or --curved-grid, which reads a structured grid as an image");
-  expect_refused(write("other.nrrd", "NRRD0004\n"), {"--curved-grid"}, "expected it with a .vts file, or a .pvd file of them");
+  expect_refused(write("other.nrrd", "NRRD0004\n"), {"--curved-grid"},
+                 "expected it with a .vts file, or a .pvd file of them");
   expect_refused(write("hidden.vts", rings_vts(3, array_of_cells("vtkGhostType", 32))), {"--curved-grid"},
                  "a curved grid with hidden cells or points");
-  expect_refused(write("cells.vts", rings_vts(3, array_of_cells("material", 1))), {"--curved-grid", "--var", "material"},
+  expect_refused(write("cells.vts", rings_vts(3, array_of_cells("material", 1))),
+                 {"--curved-grid", "--var", "material"},
                  "'material' has values of cells on a curved grid; expected values of points");
   std::string bent = rings_vts(1);
   bent.replace(bent.find(" 0\n"), 3, " 1\n");  // z of the first point
