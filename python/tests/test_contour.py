@@ -365,6 +365,22 @@ def test_periods_are_positive_and_finite(period):
             function(values, 0.5, periodic={0: period})
 
 
+def test_steps_of_half_a_period_and_more_are_errors():
+    angle, y = 2 * np.pi * np.arange(36) / 36, np.arange(20.0)
+    tube = np.broadcast_to(8 - np.hypot(y[:, None] - 9.5, y - 9.5)[..., None], (20, 20, 36))
+
+    def contour(period, of=tegl.contour, **arguments):
+        return of(tube, 0.0, coords=[y, y, angle], periodic={2: period}, **arguments)
+
+    around = contour(2 * np.pi, dtype=float)
+    assert around.measure().size == pytest.approx(2 * np.pi * around.slice(6.25, axis=2).measure().size)
+    for of in (tegl.contour, tegl.count, tegl.contour_facets):
+        with pytest.raises(ValueError, match="is 360, and the step across the seam, from 6.1.* to 360, is 353.*, such as 6.28319"):
+            contour(360, of)
+    with pytest.raises(ValueError, match="is 360, and the step across the seam"):
+        contour(360, division="kuhn")
+
+
 def test_longitudes_have_a_period_of_360():
     def contour(lon, periodic, of=tegl.contour, unit="degrees_east"):
         values = np.cos(np.radians(lon - 3)) + np.zeros((5, 1))
@@ -374,7 +390,7 @@ def test_longitudes_have_a_period_of_360():
         for periodic in ("lon", "longitude", 1, ["lon"]):
             assert contour(lon, periodic).periods.tolist() == [[0, 360]]
         assert contour(lon, "lon", tegl.count) == contour(lon, {"lon": 360}, tegl.count)
-        assert contour(lon, {"lon": 500.0}).periods.tolist() == [[0, 500]]
+        assert contour(lon, {"lon": 400.0}).periods.tolist() == [[0, 400]]
     assert contour(np.arange(0, 350, 10.0), "lon", unit="").periods.tolist() == [[0, 350]]
     for of in (tegl.contour, tegl.count):
         with pytest.raises(ValueError, match=r"the period of axis 1 \(lon\), of longitudes, is 360, and is not more than 360, the span"):

@@ -100,6 +100,9 @@ TEST_F(PeriodicCommand, WrongAxesAndOtherOptionsAreRefused) {
   expect_refused({"--periodic", "x=20", "--stream", "-o", output}, "expected more than 29");
   expect_refused({"--periodic", "x", "--facets", "--unroll", "-o", output}, "--unroll with --facets");
   expect_refused({"--periodic", "x=20", "--facets", "-o", output}, "expected more than 29");
+  for (const char* const option : {"--no-check", "--stream", "--facets"})  // a period in another unit
+    expect_refused({"--periodic", "x=100", option, "-o", output},
+                   "the period of axis 0 (x) is 100, and the step across the seam, from 29 to 100, is 71; expected");
   expect_refused({"--periodic", "x", "--triangulation", "fan", "-o", output}, "--periodic x with a triangulation");
   expect_refused({"--periodic", "x", "--pick", "1,2,3", "-o", output}, "--periodic x with --pick");
   expect_refused({"--unroll", "-o", output}, "--unroll without --periodic");

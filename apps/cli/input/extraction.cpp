@@ -94,8 +94,9 @@ void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> wi
       add_word_list(app, "--periodic", periodic_,
                     "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
                     "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
-                    "for longitudes, or as in x=2.5; auto: longitudes that span 360 degrees; none: no "
-                    "axis, and no remark on such longitudes")
+                    "for longitudes, or as in x=2.5, in the axis's unit, more than twice each step; "
+                    "auto: longitudes that span 360 degrees; none: no axis, and no remark on such "
+                    "longitudes")
           ->type_name("AXES"));
   options_.push_back(app.add_option("--lattice", lattice_,
                                     "samples on a staggered lattice: odd layers are shifted by half a step along the "

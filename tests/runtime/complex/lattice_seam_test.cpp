@@ -615,6 +615,49 @@ TEST(LatticeSeam, BadPeriodsAreRefused) {
   refused(Lattice::fcc_in_time, std::array<std::size_t, 4>{4, 4, 6, 2}, 8u, "axis 3 (t) is periodic and has 2 samples");
 }
 
+/// A sphere on layers at these places of a period of 1, from another layer on.
+Contour<3, double> sphere_between(Lattice lattice, const std::vector<double>& layers, std::size_t start = 0) {
+  std::vector<double> places;
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    places.push_back(layers[(start + k) % layers.size()] + (start + k < layers.size() ? 0.0 : 1.0));
+  Grid<3> grid = grid_of_torus<3>({12, 12, layers.size()});
+  grid.axes[2] = Axis::rectilinear(places);
+  const auto image = sampled_on_lattice<3>(lattice, grid, [](const std::array<double, 3>& x, const auto&, const auto&) {
+    return 0.4 - std::hypot(std::remainder(x[0] - 0.5, 1.0), std::remainder(x[1] - 0.5, 1.0),
+                            std::remainder(x[2] - 0.1, 1.0));
+  });
+  return extract_lattice<double>(image.view(), lattice, 0.0, {}, periods_along<3>(7u));
+}
+
+TEST(LatticeSeam, CellsAreShorterThanHalfAPeriod) {
+  for (const Lattice lattice : {Lattice::fcc, Lattice::bcc}) {
+    // two steps of 0.22 and 0.27, anywhere; at most two layers of a cell are as far apart
+    const std::vector<double> layers = {0.0, 0.22, 0.49, 0.6, 0.7, 0.85};
+    const auto expected = sphere_between(lattice, layers);
+    EXPECT_GT(expected.simplices.size(), 100u);
+    for (const std::size_t start : {2u, 4u}) {
+      const auto contour = sphere_between(lattice, layers, start);
+      EXPECT_NEAR(measure(contour).size, measure(expected).size, 1e-9);
+      EXPECT_EQ(check(contour).euler, check(expected).euler);
+      EXPECT_EQ(check(contour).components, check(expected).components);
+      EXPECT_NEAR(measure(unroll(contour).contour).size, measure(expected).size, 1e-9);
+    }
+    const auto expect_refused = [&](const std::vector<double>& bad, const std::string& text) {
+      const std::string whole = "lattice " + std::string(name_of(lattice)) + ": the period of axis 2 (z)" + text;
+      expect_error(ErrorCode::InvalidArgument, whole, [&] { (void)sphere_between(lattice, bad); });
+    };
+    expect_refused({0.0, 0.25, 0.51, 0.6, 0.7, 0.85}, " is 1, and two steps, from 0 to 0.51, are 0.51; expected two");
+    expect_refused({0.0, 0.1, 0.2, 0.3, 0.4, 0.7}, " is 1, and two steps, from 0.4 to 1, are 0.6");
+  }
+  // a period in another unit, of uneven layers
+  Grid<3> grid = grid_of_torus<3>({4, 4, 8});
+  grid.axes[2] = Axis::rectilinear({0.0, 0.1, 0.25, 0.4, 0.5, 0.6, 0.7, 0.85});
+  const auto image = sampled_on_lattice<3>(Lattice::fcc, grid, noise_everywhere<3>(5));
+  expect_error(ErrorCode::InvalidArgument, "lattice fcc: the period of axis 2 (z) is 100, and", [&] {
+    (void)extract_lattice(image.view(), Lattice::fcc, 0.5, {}, {1.0, 1.0, 100.0});
+  });
+}
+
 /// Errors of size and content, and the Euler characteristic, at spacings of which each is half of the one before.
 template <int N, class F>
 void expect_order_two_by_halves(Lattice lattice, std::size_t samples, const F& f, double size, double content,

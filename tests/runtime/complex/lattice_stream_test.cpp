@@ -439,6 +439,13 @@ TEST(StreamedLattice, BadOptionsAndGridsAreRefused) {
   expect_error(ErrorCode::InvalidArgument, "axis 2 (z) is periodic and has 7 layers; expected an even number", [&] {
     extract_lattice_streamed<float>(seven, Lattice::fcc, 0.5, other, {}, AxisPeriods<3>{0.0, 0.0, 7.0});
   });
+  Grid<3> uneven = Grid<3>::unit({4, 4, 6});
+  uneven.axes[2] = Axis::rectilinear({0.0, 1.0, 2.5, 3.0, 4.0, 5.0});
+  FunctionLayers<double, 3> six(uneven, [](std::size_t, double*) {});
+  expect_error(ErrorCode::InvalidArgument, "the period of axis 2 (z) is 100, and two steps, from 4 to 100, are 96",
+               [&] {
+                 extract_lattice_streamed<float>(six, Lattice::fcc, 0.5, other, {}, AxisPeriods<3>{0.0, 0.0, 100.0});
+               });
 }
 
 }  // namespace
