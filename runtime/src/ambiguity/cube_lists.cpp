@@ -24,7 +24,7 @@ constexpr std::uint32_t kNumber = (1u << CubeListTable::kBits) - 1;
 
 #if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
 
-void look_up(const std::uint32_t* words, const CubeFaces* faces, std::size_t count, FoundLists* found) {
+void look_up(const std::uint32_t* words, const WantedLists* faces, std::size_t count, FoundLists* found) {
   for (std::size_t i = 0; i < count; ++i) {
     FoundLists& of = found[i];
     of.with_vertices = of.with_choice = of.with_pairs = 0;
@@ -52,7 +52,7 @@ HWY_INLINE unsigned bits_from(D d, hn::Mask<D> mask, unsigned first) {
   return unsigned{bits[0]} << first;
 }
 
-void look_up(const std::uint32_t* words, const CubeFaces* faces, std::size_t count, FoundLists* found) {
+void look_up(const std::uint32_t* words, const WantedLists* faces, std::size_t count, FoundLists* found) {
   const hn::CappedTag<std::uint32_t, 8> d;
   const hn::Rebind<std::int32_t, decltype(d)> signed_d;
   const hn::Rebind<std::uint8_t, decltype(d)> bytes;
@@ -135,7 +135,7 @@ const CubeListTable& CubeListTable::instance(Content content, Triangulation tria
 
 HWY_EXPORT(look_up);
 
-void find_lists(const CubeListTable& table, std::span<const CubeFaces> faces, FoundLists* found) noexcept {
+void find_lists(const CubeListTable& table, std::span<const WantedLists> faces, FoundLists* found) noexcept {
   HWY_DYNAMIC_DISPATCH(look_up)(table.words(), faces.data(), faces.size(), found);
 }
 

@@ -45,7 +45,7 @@ class CubeListTable {
 
 /// The cubes of a tesseract: by byte, from the lowest on, their signatures and their high squares. `second`: bit set of
 /// the cubes whose second number is wanted.
-struct CubeFaces {
+struct WantedLists {
   std::uint64_t signatures, squares;
   unsigned second;
 };
@@ -58,6 +58,6 @@ struct FoundLists {
   std::uint8_t with_pairs;
 };
 /// `found`: as many as `faces`.
-void find_lists(const CubeListTable& table, std::span<const CubeFaces> faces, FoundLists* found) noexcept;
+void find_lists(const CubeListTable& table, std::span<const WantedLists> faces, FoundLists* found) noexcept;
 
 }  // namespace tegl::detail

@@ -11,7 +11,6 @@
 #include "ambiguity/connected_sides.hpp"
 #include "ambiguity/cube_lists.hpp"
 #include "ambiguity/saddle.hpp"
-#include "hwy/cache_control.h"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
 
@@ -268,7 +267,7 @@ class WordResolver {
   const FaceBlock<4>& block_;
   TesseractsOfWord& of_;
   const ResolvedCubes& cubes_;
-  std::array<CubeFaces, kWordBits> faces_;
+  std::array<WantedLists, kWordBits> faces_;
   std::array<FoundLists, kWordBits> found_;
 };
 
@@ -295,24 +294,11 @@ void RowOfTesseracts::begin_word(std::size_t word, std::uint32_t ordinal) noexce
   if (has_many_) detail::resolve(estimator_, faces_.look_at(word), of_word_);
 }
 
-/// Starts to load the data from which the builder assembles a tile: they do not fit into the nearest caches.
-void RowOfTesseracts::fetch(const ResolvedCubes& cubes, const ResolvedTile& tile) noexcept {
-  for (unsigned f = 0; f < 8; ++f) {
-    const unsigned list = tile.lists[f];
-    hwy::Prefetch(cubes.triangles(f, list).words);
-    if (tile.apart == 0) continue;
-    const std::uint32_t part = ResolvedCubes::first_part(f) + cubes.summary(list).first_part;
-    hwy::Prefetch(cubes.part_vertices() + part);
-    hwy::Prefetch(cubes.part_apexes() + part);
-  }
-}
-
 const ResolvedTile& RowOfTesseracts::resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
                                              unsigned signature) noexcept {
   if (at_once_ && ambiguous_signatures<4>()[signature]) {
     if (base[0] / kWordBits != word_) begin_word(base[0] / kWordBits, ordinal);
     const std::size_t number = number_[ordinal - first_];
-    if (has_many_ && number + 1 < of_word_.count) fetch(cubes_, of_word_.tiles[number + 1]);
     if (has_many_ && (of_word_.unsure >> number & 1u) == 0) return of_word_.tiles[number];
   }
   return alone_ = resolved_tile(estimator_, base, signature);
