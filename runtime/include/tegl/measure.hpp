@@ -76,7 +76,7 @@ struct CutMeasures {
 /// axis is periodic, values are modulo its period.
 ///
 /// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range, a wrapped contour
-/// with several periods along its last axis); Cancelled. O(#S + h) time, and that of `measure` for open faces, for h
+/// unless `cuts_wrapped`, and as `slice`); Cancelled. O(#S + h) time, and that of `measure` for open faces, for h
 /// pairs of a simplex and its cut; memory as `measure`, plus up to 32 MiB, or 32 bytes for each value. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
