@@ -73,7 +73,7 @@ struct CutMeasures {
 /// contour's first time, the limit from above. This is the cut that `slice` makes, except if missing values leave no
 /// contour before that time: `slice` then takes the limit from above. Values beyond the contour give 0. The cuts of a
 /// wrapped contour are made as by `slice_stack`, 16 in one pass, and measured; a content is as in Measures. If the last
-/// axis is periodic, values are modulo its period.
+/// axis is periodic, every value has a cut.
 ///
 /// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range, a wrapped contour
 /// unless `cuts_wrapped`, and as `slice`); Cancelled. O(#S + h) time, and that of `measure` for open faces, for h
