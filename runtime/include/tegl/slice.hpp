@@ -69,10 +69,11 @@ namespace tegl {
 /// Quadrilaterals are split by the shorter diagonal; prisms (N = 5) into three tetrahedra, in the order of the
 /// contour's vertex numbers. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
-/// attributes or normals of another number, a wrapped contour unless `cuts_wrapped`, simplices of half a period of the
-/// cut or more if this is a sum of several periods), Cancelled. If the hyperplane is beyond the contour, the cut is
-/// empty. O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c) memory, and 8 #V bytes for each
-/// period that is crossed. The result does not depend on the number of threads. Thread-safe.
+/// attributes or normals of another number, a wrapped contour unless `cuts_wrapped`; across a period, an offset or a
+/// coordinate more than 2^29 periods from its start, and simplices of half a period of the cut or more if this is a sum
+/// of several periods), Cancelled. If the hyperplane is beyond the contour, the cut is empty. O(#S + #V) time, plus
+/// O(c log c) for a cut of c simplices; #V bytes plus O(c) memory, and 8 #V bytes for each period that is crossed. The
+/// result does not depend on the number of threads. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane,

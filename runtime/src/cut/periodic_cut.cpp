@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,11 +31,8 @@ class Mover {
   }
 
   Contour<N, Real> run() {
-    for_each_item(contour_.vertices.size(), work_.threads, {}, [&](std::size_t v) {
-      const std::array<double, N> x = widened_point<N>(contour_.vertices[v]);
-      for (std::size_t i = 0; i < counted_.size(); ++i)
-        shares_[v * counted_.size() + i] = share_of(counted_[i].period, x);
-    });
+    require_near();
+    find_shares();
     find_simplices();
     number_vertices();
     Contour<N, Real> result = moved();
@@ -51,17 +49,13 @@ class Mover {
   };
 
   static constexpr std::int64_t kZero = std::int64_t{1} << 31;  ///< the lower half of the key of a vertex that stays
-  static constexpr std::size_t kBlock = std::size_t{1} << 14;   ///< simplices of a part of the work
+  static constexpr double kFarthest = 1 << 29;  ///< periods to vertices and levels, so that keys have room
+  static constexpr double kLongest = 128;       ///< periods that a simplex reaches over, to bound the work for it
+  static constexpr std::size_t kBlock = std::size_t{1} << 14;  ///< simplices of a part of the work
 
   static Key key_of(Index vertex, std::int64_t times) { return Key{vertex} << 32 | static_cast<Key>(times + kZero); }
   static Index vertex_of(Key key) { return static_cast<Index>(key >> 32); }
   static double times_of(Key key) { return static_cast<double>(static_cast<std::int64_t>(key & 0xffffffffu) - kZero); }
-  /// Contours whose coordinates are far from their periods are not sound, but must not overflow.
-  static std::int64_t whole(double times) {
-    constexpr double kMost = 1 << 29;
-    return static_cast<std::int64_t>(std::clamp(times, -kMost, kMost));
-  }
-
   /// A vertex that is moved.
   [[nodiscard]] Vertex moved_vertex(Index v, double times) const {
     Vertex x = contour_.vertices[v];
@@ -70,17 +64,55 @@ class Mover {
     return x;
   }
 
+  [[nodiscard]] bool is_near(double height) const {
+    return std::abs(height / crossed_.height - crossed_.across.start) <= kFarthest;
+  }
+
+  /// Throws InvalidArgument if levels or vertices are so far from the period that moves would have no keys.
+  void require_near() const {
+    const auto fail = [&](const std::string& what, double height) {
+      const bool is_place = family_.is_across_axis();
+      const double sign = is_place ? family_.sign() : 1.0;
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("{} {}, with the period {} from {}; expected at most {} periods from there", what,
+                      is_place ? fmt::format("the coordinate {} along axis {}", sign * height, family_.dropped_axis())
+                               : fmt::format("the height {} over the hyperplane through 0", height),
+                      std::abs(crossed_.height), sign * crossed_.across.start * crossed_.height, kFarthest));
+    };
+    for (const double level : levels_)
+      if (!is_near(level)) fail("a cut across a period has", level);
+    std::atomic<bool> are_near = true;
+    for_each_item(contour_.vertices.size(), work_.threads, {}, [&](std::size_t v) {
+      if (!is_near(family_.height(contour_.vertices[v]))) are_near = false;
+    });
+    if (are_near) return;
+    for (std::size_t v = 0; v < contour_.vertices.size(); ++v)
+      if (const double height = family_.height(contour_.vertices[v]); !is_near(height))
+        fail(fmt::format("vertex {} has", v), height);
+  }
+
+  /// By the dual vectors if the basis is another one; otherwise by height, which does not depend on them.
+  void find_shares() {
+    const std::size_t count = counted_.size();
+    for_each_item(contour_.vertices.size(), work_.threads, {}, [&](std::size_t v) {
+      if (!crossed_.is_other) {
+        shares_[v] = family_.height(contour_.vertices[v]) / crossed_.height;
+        return;
+      }
+      const std::array<double, N> x = widened_point<N>(contour_.vertices[v]);
+      for (std::size_t i = 0; i < count; ++i) shares_[v * count + i] = share_of(counted_[i].period, x);
+    });
+  }
+
   void find_simplices() {
     const std::size_t count = contour_.simplices.size();
     std::vector<std::vector<Found>> parts(block_count(count, kBlock));
     std::atomic<bool> are_short = true;
     for_each_block(count, kBlock, work_.threads, work_.progress,
                    [&](std::size_t block, std::size_t from, std::size_t to) {
-                     for (std::size_t s = from; s < to; ++s) {
-                       const std::size_t before = parts[block].size();
-                       find_moves(s, parts[block]);
-                       if (crossed_.is_other && parts[block].size() > before && !is_short(s)) are_short = false;
-                     }
+                     for (std::size_t s = from; s < to; ++s)
+                       if (!find_moves(s, parts[block])) are_short = false;
                    });
     if (!are_short)
       throw Error(ErrorCode::InvalidArgument,
@@ -90,12 +122,12 @@ class Mover {
   }
 
   /// How many times the period across is between the places of two vertices next to each other.
-  [[nodiscard]] std::int64_t times_apart(Index from, Index v) const {
+  [[nodiscard]] double times_apart(Index from, Index v) const {
     double times = 0.0;
     const std::size_t count = counted_.size();
     for (std::size_t i = 0; i < count; ++i)
       times += counted_[i].times * std::round(shares_[from * count + i] - shares_[v * count + i]);
-    return whole(times);
+    return times;
   }
 
   /// Whether the corners of a simplex differ by less than half of each period of the result.
@@ -118,33 +150,36 @@ class Mover {
     return true;
   }
 
-  /// Appends the simplex once for each multiple of the period by which it touches a level.
-  void find_moves(std::size_t s, std::vector<Found>& found) const {
+  /// Appends the simplex once for each multiple of the period by which it touches a level. Returns false if it is too
+  /// long for cuts.
+  [[nodiscard]] bool find_moves(std::size_t s, std::vector<Found>& found) const {
     const auto& simplex = contour_.simplices[s];
-    std::array<std::int64_t, N> apart;  // by corner: the periods to the place next to corner 0
-    const auto range_at = [&](std::int64_t times) {
+    std::array<double, N> apart;  // by corner: the periods to the place next to corner 0
+    const auto range_at = [&](double times) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
       for (int j = 0; j < N; ++j) {
-        const double height = family_.height(moved_vertex(simplex[j], static_cast<double>(times + apart[j])));
+        const double height = family_.height(moved_vertex(simplex[j], times + apart[j]));
         low = std::min(low, height);
         high = std::max(high, height);
       }
       return std::pair(low, high);
     };
     for (int j = 0; j < N; ++j) apart[j] = times_apart(simplex[0], simplex[j]);
-    const auto [lowest, highest] = range_at(0);
-    // one more at both ends, as coordinates are rounded
+    const auto [lowest, highest] = range_at(0.0);
     const double along = crossed_.height;
+    if (!(highest - lowest <= kLongest * std::abs(along))) return false;
+    // one more at both ends, as coordinates are rounded
     const auto [from, to] = std::minmax({(levels_.front() - highest) / along, (levels_.front() - lowest) / along,
                                          (levels_.back() - highest) / along, (levels_.back() - lowest) / along});
-    const std::int64_t last = whole(std::floor(to)) + 1;
-    for (std::int64_t times = whole(std::ceil(from)) - 1; times <= last; ++times) {
+    const std::size_t before = found.size();
+    for (double times = std::ceil(from) - 1.0; times <= std::floor(to) + 1.0; ++times) {
       const auto [low, high] = range_at(times);
       const auto level = std::lower_bound(levels_.begin(), levels_.end(), low);
       if (level == levels_.end() || *level > high) continue;
       Found& one = found.emplace_back(Found{static_cast<Index>(s), {}});
-      for (int j = 0; j < N; ++j) one.corners[j] = key_of(simplex[j], times + apart[j]);
+      for (int j = 0; j < N; ++j) one.corners[j] = key_of(simplex[j], static_cast<std::int64_t>(times + apart[j]));
     }
+    return !crossed_.is_other || found.size() == before || is_short(s);
   }
 
   void number_vertices() {

@@ -21,7 +21,8 @@ namespace tegl::detail {
 /// result has the other periods (`crossed.within`). A simplex that touches levels in several multiples is there several
 /// times. Simplices and vertices are in the order of the contour. `levels`: heights, ascending; those across an axis
 /// are rounded to Real. The contour is one that require_sound accepts; `crossed`: of its periods, with cuts. Throws
-/// InvalidArgument if the basis is another one and a simplex is as long as half a period of it. O(#S + #V) time, plus
+/// InvalidArgument if the basis is another one and a simplex is as long as half a period of it, or if a vertex or a
+/// level is far from the period. O(#S + #V) time, plus
 /// O(c log c) for c simplices of the result; 8 #V bytes for each period of the contour that is crossed, plus O(c)
 /// memory.
 template <int N, class Real>

@@ -277,6 +277,30 @@ TEST(PeriodicCuts, SimplicesOfHalfASumOfPeriodsAreRefused) {
   EXPECT_TRUE(is_closed(check(slice(contour, Hyperplane<3>{{1.0, 2.0, 0.0}, 0.5}))));
 }
 
+TEST(PeriodicCuts, PlacesFarFromAPeriodAreErrorsUnlessTheyAreModuloIt) {
+  const auto image = cell_image<3>({12, 12, 12}, {{{1, 0, 0}, {0, 1, 0}, {0.3, 0, 1}}}, waves_of_cell);
+  const auto contour = wrapped<double>(image, all_periodic<3>(), 0.4);
+  expect_error(
+      ErrorCode::InvalidArgument,
+      "a cut across a period has the coordinate 1000000000000 along axis 2, with the period 1 from 0; expected "
+      "at most 536870912 periods",
+      [&] { (void)slice(contour, Hyperplane<3>::across(2, 1e12)); });
+  expect_error(ErrorCode::InvalidArgument, "the height 1e+300 over the hyperplane through 0", [&] {
+    (void)slice(contour, {{1.0, 1.0, 0.0}, 1e300});
+  });
+  EXPECT_TRUE(is_closed(check(slice(contour, Hyperplane<3>::across(1, 1e12 + 0.25)))));
+  auto hostile = contour;
+  hostile.vertices[3] = {0.0, 0.0, 1e12};
+  expect_error(ErrorCode::InvalidArgument, "vertex 3 has the height 1000000000000 over the hyperplane through 0", [&] {
+    (void)slice(hostile, {{0.0, 1.0, 1.0}, 0.5});
+  });
+  // dual vectors that are wrong do not lead to more work
+  auto wrong = contour;
+  for (auto& period : wrong.periods) period.dual = {1e-9, 1e-9, 1e-9};
+  wrong.vertices[contour.simplices[0][1]][2] += 1e6;
+  EXPECT_THROW((void)slice(wrong, {{0.0, 1.0, 1.0}, 0.5}), Error);
+}
+
 TEST(PeriodicCuts, StacksAreCancelledWhileSimplicesAreMoved) {
   const auto contour = wrapped<double>(torus_image<3, double>({72, 72, 72}, waves_of_cell), all_periodic<3>(), 0.05);
   std::vector<Hyperplane<3>> hyperplanes;
