@@ -64,6 +64,15 @@ class Mover {
     return x;
   }
 
+  /// The height of a vertex that is moved.
+  [[nodiscard]] double height_at(Index v, double times) const {
+    if (times == 0.0) return family_.height(contour_.vertices[v]);
+    if (!family_.is_across_axis()) return family_.height(moved_vertex(v, times));
+    const int a = family_.dropped_axis();
+    const double x = static_cast<double>(contour_.vertices[v][a]) + times * crossed_.across.vector[a];
+    return family_.sign() * static_cast<double>(static_cast<Real>(x));
+  }
+
   [[nodiscard]] bool is_near(double height) const {
     return std::abs(height / crossed_.height - crossed_.across.start) <= kFarthest;
   }
@@ -158,7 +167,7 @@ class Mover {
     const auto range_at = [&](double times) {
       double low = std::numeric_limits<double>::infinity(), high = -low;
       for (int j = 0; j < N; ++j) {
-        const double height = family_.height(moved_vertex(simplex[j], times + apart[j]));
+        const double height = height_at(simplex[j], times + apart[j]);
         low = std::min(low, height);
         high = std::max(high, height);
       }
@@ -168,11 +177,15 @@ class Mover {
     const auto [lowest, highest] = range_at(0.0);
     const double along = crossed_.height;
     if (!(highest - lowest <= kLongest * std::abs(along))) return false;
-    // one more at both ends, as coordinates are rounded
     const auto [from, to] = std::minmax({(levels_.front() - highest) / along, (levels_.front() - lowest) / along,
                                          (levels_.back() - highest) / along, (levels_.back() - lowest) / along});
+    // more at both ends, as coordinates are rounded: one across several axes
+    const double largest =
+        std::max({std::abs(lowest), std::abs(highest), std::abs(levels_.front()), std::abs(levels_.back())});
+    constexpr double kCoordinates = 16 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    const double more = family_.is_across_axis() ? kCoordinates * largest / std::abs(along) : 1.0;
     const std::size_t before = found.size();
-    for (double times = std::ceil(from) - 1.0; times <= std::floor(to) + 1.0; ++times) {
+    for (double times = std::ceil(from - more), last = std::floor(to + more); times <= last; ++times) {
       const auto [low, high] = range_at(times);
       const auto level = std::lower_bound(levels_.begin(), levels_.end(), low);
       if (level == levels_.end() || *level > high) continue;
