@@ -444,6 +444,41 @@ def test_longitudes_that_span_360_degrees_are_found():
         tegl.contour(spot, 0.0, periodic=1.5)
 
 
+def test_cuts_across_periods_by_place_or_normal():
+    turn = 2 * np.pi * np.arange(24) / 24
+    z, y, x = np.meshgrid(turn, turn, turn, indexing="ij")
+    values = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x) + 0.2 * np.cos(x)
+
+    def contour(shear, periodic="all"):
+        affine = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [shear, 0, 1, 0]]) / 24
+        return tegl.contour(values, 0.01, periodic=periodic, dtype=float, affine=affine)
+
+    straight = contour(0.0)
+    for axis, normal in enumerate(np.eye(3)):
+        at = straight.slice(0.97, axis=axis)
+        for factor, place in ((1, 0.97), (2, 0.97), (1, 3.97), (0.5, -0.03)):
+            cut = straight.slice(normal=factor * normal, offset=factor * place)
+            assert cut.check().is_closed and len(cut.vertices) == len(at.vertices)
+            np.testing.assert_allclose(cut.vertices, at.vertices, atol=1e-9)
+    # lattice planes
+    for normal in ([1, 1, 0], [1, 1, 1], [1, -2, 0]):
+        assert straight.slice(normal=normal, offset=7.3).check().is_closed
+    with pytest.raises(ValueError, match="across one of its periods"):
+        straight.slice(normal=[1, 2 ** 0.5, 0], offset=0.5)
+    with pytest.raises(ValueError, match="expected an offset between"):
+        straight.slice(normal=[1, 2 ** 0.5, 0], offset=7.5)
+    # rounding of the affine is none of the cell
+    for shear in (1e-8, 0.3):
+        oblique = contour(shear)
+        for axis in range(3):
+            for place in (0.2, 1.2, -4.8):
+                assert oblique.slice(place, axis=axis).check().is_closed
+    with pytest.raises(ValueError, match="between"):
+        contour(0.0, periodic=0).slice(1.5, axis=2)
+    for place in (0.2, 1.2, -0.8, 5.2):
+        assert straight.measure(at=place).size[0] == pytest.approx(straight.measure(at=0.2).size[0])
+
+
 def test_periodic_axes_by_name_number_and_period():
     image = np.add.outer(np.zeros(8), np.cos(2 * np.pi * np.arange(12) / 12))
     def edges(**arguments):

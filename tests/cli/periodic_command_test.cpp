@@ -226,10 +226,12 @@ TEST_F(PeriodicCommand, CutsAcrossAPeriodAreModuloThePeriod) {
     arguments.insert(arguments.end(), {"--at", "z=1"});
     EXPECT_THAT(run_tegl(arguments).err, Not(HasSubstr("unrolled")));
     // slices, also between the last sample and the end of the period
-    for (const char* const place : {"z=29.5", "z=-0.5", "z=59.5"}) {
+    for (const auto& [option, place] :
+         {std::pair("--at", "z=29.5"), std::pair("--at", "z=-0.5"), std::pair("--at", "z=59.5"),
+          std::pair("--plane", "0,0,1=59.5"), std::pair("--plane", "0,0,-2=1")}) {
       arguments = {"slice"};
       arguments.insert(arguments.end(), input.begin(), input.end());
-      arguments.insert(arguments.end(), {"--at", place, "-o", path("cut.vtkhdf")});
+      arguments.insert(arguments.end(), {option, place, "-o", path("cut.vtkhdf")});
       const RunResult run = run_tegl(arguments);
       EXPECT_EQ(run.exit, 0) << run.err;
       EXPECT_THAT(run.err, Not(HasSubstr("unrolled")));
@@ -240,6 +242,52 @@ TEST_F(PeriodicCommand, CutsAcrossAPeriodAreModuloThePeriod) {
   const RunResult run = run_tegl({"slice", saved, "--at", "y=-1", "-o", path("cut.vtkhdf")});
   EXPECT_NE(run.exit, 0);
   EXPECT_THAT(run.err, HasSubstr("lies outside of the saved contour"));
+}
+
+TEST_F(PeriodicCommand, PlacesOnAShearedAxisAndLatticePlanesCutTheRepetition) {
+  OwnedImage<double, 3> image;
+  image.grid.linear[0][2] = 0.3;
+  for (Axis& axis : image.grid.axes) axis = Axis::uniform(24, 0.0, 1.0 / 24);
+  const auto field = [](double x, double y, double z) {
+    const double turn = 2 * std::numbers::pi;
+    return std::sin(turn * (x - 0.3 * z)) + 0.7 * std::cos(turn * y) + 0.8 * std::sin(turn * z + 0.5);
+  };
+  for (int k = 0; k < 24; ++k)
+    for (int j = 0; j < 24; ++j)
+      for (int i = 0; i < 24; ++i) image.values.push_back(field(i / 24.0 + 0.3 * k / 24.0, j / 24.0, k / 24.0));
+  const std::string file = path("sheared.nrrd"), saved = path("sheared.vtkhdf"), output = path("cut.vtkhdf");
+  write_image(image.view(), file);
+  (void)run_json({"contour", file, "--iso", "0.4", "--periodic", "all", "-o", saved});
+  for (const std::vector<std::string>& input :
+       {std::vector<std::string>{saved}, {file, "--iso", "0.4", "--periodic", "all"}}) {
+    const auto cut_by = [&](const std::string& option, const std::string& value) {
+      std::vector<std::string> arguments = {"slice"};
+      arguments.insert(arguments.end(), input.begin(), input.end());
+      arguments.insert(arguments.end(), {option, value, "-o", output});
+      const RunResult run = run_tegl(arguments);
+      EXPECT_EQ(run.exit, 0) << run.err;
+      EXPECT_THAT(run.err, Not(HasSubstr("unrolled")));
+      return to_contour<2>(read_mesh(output));
+    };
+    const double size = measure(cut_by("--at", "z=0.2")).size;
+    for (const double z : {0.2, 1.2, -0.8, 5.2})
+      for (const auto& [option, value] :
+           {std::pair("--at", "z=" + std::to_string(z)), std::pair("--plane", "0,0,2=" + std::to_string(2 * z))}) {
+        const auto cut = cut_by(option, value);
+        EXPECT_EQ(check(cut).boundary_simplices, 0u);
+        EXPECT_NEAR(measure(cut).size, size, 1e-5) << value;
+        for (const auto& x : cut.vertices) ASSERT_NEAR(field(x[0], x[1], z), 0.4, 0.02) << value;
+      }
+    // several periods cross a lattice plane, here y + z = 7.3
+    const auto plane = cut_by("--plane", "0,1,1=7.3");
+    EXPECT_EQ(check(plane).boundary_simplices, 0u);
+    EXPECT_EQ(plane.periods.size(), 2u);
+    std::vector<std::string> measured = {"measure"};
+    measured.insert(measured.end(), input.begin(), input.end());
+    measured.insert(measured.end(), {"--at", "z=0.2,1.2"});
+    const nlohmann::json cuts = run_json(measured)["cuts"];
+    EXPECT_NEAR(cuts[1]["size"].get<double>(), size, 1e-5);
+  }
 }
 
 TEST_F(PeriodicCommand, PlacesBesideThePeriodOfATurnedImageAreItsPlaces) {

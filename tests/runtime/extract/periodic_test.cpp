@@ -621,7 +621,7 @@ TEST(Periodic, BadPeriodsAndOptionsAreRefused) {
   options.estimator.choose = [](const AmbiguousFace&) { return tile::Choice::low; };
   refuses("Ambiguity::custom", {1.0, 0.0}, options);
   const auto contour = wrapped(torus_image<3>({5, 4, 5}, gyroid), all_periodic<3>(), 0.0);
-  const Hyperplane<3> oblique{{1.0, 0.5, 0.0}, 0.5};
+  const Hyperplane<3> oblique{{1.0, std::numbers::phi, 0.0}, 0.5};
   EXPECT_FALSE(cuts_wrapped<3>(contour.periods, oblique));
   EXPECT_TRUE(cuts_wrapped<3>(contour.periods, Hyperplane<3>::across(1, 0.5)));
   expect_error(ErrorCode::InvalidArgument, "across one of its periods", [&] { (void)slice(contour, oblique); });
