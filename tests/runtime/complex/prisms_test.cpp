@@ -284,6 +284,13 @@ TEST(Prisms, CapsCloseContoursAtTheBorder) {
         const auto contour = extract(swept, 0.5, options);
         expect_closed_manifold(contour);
         EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}), count(swept, 0.5, options));
+        const auto in_doubles = extract<double>(swept, 0.5, options);
+        for (std::size_t k = 0; k < kPrismTimes.size(); ++k) {
+          Complex<3> step = mesh.complex();
+          step.set_values(layer_of(values, mesh.points.size(), k));
+          EXPECT_TRUE(same_surface(extract<double>(step, 0.5, options),
+                                   slice(in_doubles, Hyperplane<4>::across(3, kPrismTimes[k]))));
+        }
       }
     // all high: the caps are the border, with the volume of the mesh
     swept.set_values(std::vector<double>(values.size(), 1.0));
