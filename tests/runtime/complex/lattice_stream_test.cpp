@@ -127,6 +127,7 @@ void expect_streamed_by_cells(Lattice lattice, const std::array<std::size_t, N>&
   Grid<N> grid;
   for (int a = 0; a < N; ++a) grid.axes[a] = Axis::uniform(sizes[a], -1.0, 0.1);
   if (seed % 2 == 0) grid.linear[0][1] = 0.3;
+  if (seed % 3 == 0) grid.axes[N - 1] = Axis::uniform(sizes[N - 1], 1.0, -0.1);
   const auto image = sampled_on_lattice<N>(lattice, grid, noise_everywhere<N>(seed));
   for (const Ambiguity ambiguity : rules)
     for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
@@ -163,6 +164,7 @@ TEST(StreamedLattice, ByCellsIsTheContourInMemory) {
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 9}, 4, {Ambiguity::high, Ambiguity::mean});
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {33, 30, 31, 4}, 5, {Ambiguity::saddle});
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 2}, 6, {Ambiguity::high});
+  expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 9}, 9, {Ambiguity::low, Ambiguity::mean});
 }
 
 template <int N>
