@@ -192,6 +192,8 @@ def test_an_index_gives_the_contours_of_the_mesh():
     (dict(values=np.zeros(27)), ValueError, "level is 0.0, and all values are 0.0; expected a level between two values"),
     (dict(points=np.zeros((0, 3)), cells={"tetra": []}, values=[]), ValueError, "the mesh has no points; expected some"),
     (dict(cells={}), ValueError, "the mesh has no cells; expected some, or allow_empty=True"),
+    (dict(cells={"tetra": [[0, 1, 3, 9], [1, 2, 4, 10], [9, 1, 0, 3]]}), ValueError,
+     "cell 2 has the same corners as cell 0; expected each cell once"),
     (dict(normals="sobel"), ValueError, "normals of a mesh are 'sobel'; expected True"),
     (dict(dtype="int32"), ValueError, "expected float32 or float64"),
 ])
