@@ -242,6 +242,53 @@ TEST(CellMesh, GhostTypesAreReadFromAllPiecesAndMustBeWhole) {
   expect_error(ErrorCode::MalformedFile, {"vtkGhostType", "float", "UInt8"}, [&] { read(dir / "b.vtu"); });
 }
 
+TEST(CellMesh, MarkupWithinNumbersIsTakenOut) {
+  TempDir dir;
+  const auto values = [&](const std::string& text) {
+    write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points(text)));
+    return read(dir / "a.vtu").values;
+  };
+  const std::vector<double> expected = {0, 1, 25, 3, 4};
+  for (const std::string& text : {
+           std::string("<!-- five numbers: 9 8 7 --> 0 1 25 3 4"),
+           std::string("0 1 2<!---->5 3 4<!-- > -->"),
+           std::string("<![CDATA[0 1 25]]> 3 <![CDATA[4]]>"),
+           std::string("0 <?note 1 ?> 1 2<![CDATA[5 3]]> 4"),
+       })
+    EXPECT_EQ(values(text), expected) << text;
+  EXPECT_EQ(values("0 1 25 3 <!--" + std::string(9000, '<') + " - - > --> 4"), expected);
+  const auto refuse = [&](const std::string& text, const std::string& part) {
+    expect_error(ErrorCode::MalformedFile, {"a.vtu", part}, [&] { values(text); });
+  };
+  refuse("0 1 25 3 <!-- 4 -->", "4 numbers; expected 5");
+  refuse("0 1 <![CDATA[25]]]> 3 4", "25]");
+  refuse("0 1 25] 3 4", "25]");
+}
+
+TEST(CellMesh, Base64OfAnotherLengthThanItsHeaderIsAnError) {
+  TempDir dir;
+  const auto read_values = [&](const std::string& base64, const std::string& header) {
+    std::string text = vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4"));
+    text.insert(text.find("version=\"0.1\""), header);
+    const std::size_t at = text.find("format=\"ascii\" Name=\"f\">0 1 2 3 4");
+    text.replace(at, std::string("format=\"ascii\" Name=\"f\">0 1 2 3 4").size(),
+                 "format=\"binary\" Name=\"f\">\n" + base64 + "\n");
+    write_file(dir / "a.vtu", text);
+    return read(dir / "a.vtu").values;
+  };
+  // the numbers 1 to 5 after the number of their bytes, 40
+  const std::string numbers = "AAAAAAAA8D8AAAAAAAAAQAAAAAAAAAhAAAAAAAAAEEAAAAAAAAAUQA==";
+  const std::string narrow = "KAAAAA==", wide = "KAAAAAAAAAA=";
+  const std::vector<double> expected = {1, 2, 3, 4, 5};
+  EXPECT_EQ(read_values(narrow + numbers, ""), expected);
+  EXPECT_EQ(read_values(wide + numbers, "header_type=\"UInt64\" "), expected);
+  expect_error(ErrorCode::MalformedFile,
+               {"a.vtu", "'f' has 40 bytes by its header, and 44 in base64", "header_type=\"UInt64\""},
+               [&] { read_values("KAAAAAAAAAAAAAAAAADwPwAAAAAAAABAAAAAAAAACEAAAAAAAAAQQAAAAAAAABRA", ""); });
+  expect_error(ErrorCode::MalformedFile, {"a.vtu", "'f' has 40 bytes by its header, and 43 in base64"},
+               [&] { read_values(wide + numbers + "AAAA", "header_type=\"UInt64\" "); });
+}
+
 TEST(CellMesh, PiecesThatRepeatCellsAreErrorsThatNameThem) {
   // a line before the cells; the second piece has its own points, and the cells in the other order
   const std::string one = vtu(kPoints, "0 1 " + kCorners, "2 6 10", "3 10 10", on_points("0 1 2 3 4"), "5 3");
