@@ -297,6 +297,12 @@ def test_contours_of_lattices_and_of_scattered_points():
         tegl.contour_points(points[[0, 1, 2, 3, 4, 0]], np.zeros(6), 0.0)
     with pytest.raises(ValueError, match="shape"):
         tegl.contour_points(points[0], np.zeros(3), 0.0)
+    square, near = [[0, 0], [1, 0], [0, 1], [1, 1]], [[1e-300, 0], [0, 1e-300], [1e-300, 1e-300]]
+    for count, text in ((1, "point 4 is so close to other points that rounding hides it; expected points that are further apart"),
+                        (2, "point 4 and 1 other are so close to other points that rounding hides them"),
+                        (3, "point 4 and 2 others are so close to other points that rounding hides them")):
+        with pytest.raises(ValueError, match=text):
+            tegl.contour_points(square + near[:count], np.arange(4 + count), 0.5)
 
 
 VTU = """<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}">
