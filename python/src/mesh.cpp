@@ -15,6 +15,7 @@
 #include "tegl/cell_index.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/delaunay.hpp"
+#include "tegl/equal_cells.hpp"
 
 namespace tegl::python {
 
@@ -49,10 +50,16 @@ struct MeshArguments {
 
 using AnyComplex = std::variant<Complex<2>, Complex<3>, Complex<4>>;
 
+/// Checks that no two cells have the same corners, too.
 template <int N>
 Complex<N> complex_of_cells(std::vector<std::array<double, N>> points, const CellLists& cells) {
-  if (cells.ends.empty()) return Complex<N>(std::move(points), cells.types, cells.corners);
-  return Complex<N>(std::move(points), cells);
+  Complex<N> complex = cells.ends.empty() ? Complex<N>(std::move(points), cells.types, cells.corners)
+                                          : Complex<N>(std::move(points), cells);
+  if (const auto equal = find_equal_cells(cells))
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("cell {} has the same corners as cell {}; expected each cell once", equal->second, equal->first));
+  return complex;
 }
 
 /// `points`: #P x N, or, if they move, #T x #P x N.

@@ -273,8 +273,15 @@ def _reals(what_is: str, values: object, expected: str) -> np.ndarray:
     raise TypeError(f"{what_is} {values!r}; expected {expected}") from None
 
 
-def _axis(coordinates, axis: str, size: int) -> UniformAxis | list[float]:
-    """Uniform if that is exact to the last bit; else all coordinates. `axis`: its name in errors."""
+def _is_monotonic(values: np.ndarray) -> bool:
+    """Whether numbers ascend or descend strictly."""
+    steps = np.diff(values)
+    return bool((steps > 0).all() or (steps < 0).all())
+
+
+def _axis(coordinates, axis: str, size: int, unit: str) -> UniformAxis | list[float]:
+    """Uniform if that is exact to the last bit; else all coordinates. Longitudes that jump by a turn, as rolled ones do, are
+    continued. `axis`: its name in errors."""
     if isinstance(coordinates, UniformAxis):
         return coordinates
     values = _reals(f"the coordinates of {axis} are", coordinates, "numbers, ascending or descending")
@@ -285,9 +292,12 @@ def _axis(coordinates, axis: str, size: int) -> UniformAxis | list[float]:
     if not np.isfinite(values).all():
         wrong = int(np.argmin(np.isfinite(values)))
         raise ValueError(f"coordinate {wrong} of {axis} is {values[wrong]}; expected a finite number")
-    rises = np.diff(values) > 0
-    falls = np.diff(values) < 0
-    if not (rises.all() or falls.all()):
+    if not _is_monotonic(values) and _tegl.is_longitude_unit(unit):
+        continued = values.copy()
+        _tegl.continue_longitudes(continued, [len(continued)])
+        values = continued if _is_monotonic(continued) else values
+    if not _is_monotonic(values):
+        rises, falls = np.diff(values) > 0, np.diff(values) < 0
         descends = falls[0]
         wrong = int(np.argmin(falls if descends else rises))
         raise ValueError(f"coordinates {wrong} and {wrong + 1} of {axis} are {values[wrong]:g} and {values[wrong + 1]:g}; "
@@ -517,7 +527,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         if isinstance(given, UniformAxis) and not (np.isfinite(given).all() and given.step != 0):
             raise ValueError(f"{called} has the origin {given.origin:g} and the spacing {given.step:g}; expected finite "
                              "numbers, and a spacing other than 0")
-        axes.append(_axis(given, called, size))
+        axes.append(_axis(given, called, size, units[axis]))
     is_reversed = turn_around(0 if time_axis is None else time_axis, ndim)
     matrix = given_affine = None if affine is None else _affine(affine, ndim)
     with np.errstate(over="ignore", invalid="ignore"):

@@ -82,7 +82,7 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
     level, allow_empty = _level_of(level), _arguments.as_bool("allow_empty", allow_empty)
     core = _tegl.extract_mesh(*arguments, level, _is_double(dtype), options, others, progress)
     if not allow_empty and not len(core.simplices):
-        _require_level(arguments[2], level)
+        _require_level(_values_of_cells(arguments[1], arguments[2]), level, arguments[2].size > 0)
     return Contour._of(core, False)
 
 
@@ -104,7 +104,7 @@ def contour_mesh_facets(points, cells=None, values=None, level: float | None = N
     level, allow_empty = _level_of(level), _arguments.as_bool("allow_empty", allow_empty)
     core = _tegl.extract_mesh_facets(*arguments, level, _is_double(dtype), options, progress)
     if not allow_empty and not len(core.vertices):
-        _require_level(arguments[2], level)
+        _require_level(_values_of_cells(arguments[1], arguments[2]), level, arguments[2].size > 0)
     return Facets(core, False)
 
 
@@ -136,10 +136,10 @@ class MeshIndex:
                  progress: Progress | None = None) -> None:
         """Arguments as in `tegl.contour_mesh`."""
         arguments = _arguments_of(points, cells, values, times)
-        all_values = arguments[2].ravel()
         self._shape = arguments[2].shape
-        self._range = np.array([end(all_values, initial=np.nan) for end in (np.fmin.reduce, np.fmax.reduce)])
-        self._core = _tegl.MeshIndex(*arguments, _arguments.threads_of(threads), progress)
+        self._core = _tegl.MeshIndex(*arguments, _arguments.threads_of(threads), progress)  # checks the cells
+        of_cells = _values_of_cells(arguments[1], arguments[2]).ravel()
+        self._range = np.array([end(of_cells) for end in (np.fmin.reduce, np.fmax.reduce)] if of_cells.size else [])
 
     @property
     def memory(self) -> int:
@@ -160,7 +160,7 @@ class MeshIndex:
         others = _attributes_of(attributes, None, self._shape)
         core = self._core.contour(level, _is_double(dtype), chosen, others, progress)
         if not allow_empty and not len(core.simplices):
-            _require_level(self._range, level)
+            _require_level(self._range, level, self._shape[-1] > 0)
         return Contour._of(core, False)
 
 
@@ -575,12 +575,21 @@ def _is_double(dtype) -> bool:
     return kind == np.dtype(np.float64)
 
 
-def _require_level(values: np.ndarray, level: float) -> None:
-    """Raises a ValueError if an empty contour is due to the level."""
+def _values_of_cells(cells: _CellArrays, values: np.ndarray) -> np.ndarray:
+    """The values at the points of cells: others have no contour. The cells are checked."""
+    is_used = np.zeros(values.shape[-1], dtype=bool)
+    is_used[cells[1]] = True
+    is_used[cells[3]] = True
+    return values[..., is_used]
+
+
+def _require_level(values: np.ndarray, level: float, has_points: bool) -> None:
+    """Raises a ValueError if an empty contour is due to the level, or to a mesh without cells. `values`: of the cells."""
     present = values[~np.isnan(values)]
     if not present.size:
+        part = "cells" if has_points else "points"
         raise ValueError("all values are missing (NaN); expected values, or allow_empty=True for an empty contour"
-                         if values.size else "the mesh has no points; expected some, or allow_empty=True for an empty contour")
+                         if values.size else f"the mesh has no {part}; expected some, or allow_empty=True for an empty contour")
     least, most = str(present.min()), str(present.max())
     if not present.min() < level <= present.max():
         raise _outside.level_error(level, least, most, "values")

@@ -400,6 +400,28 @@ def test_longitudes_have_a_period_of_360():
     assert contour(np.arange(0, 151, 10.0), {"lon": 160.0}).periods.tolist() == [[0, 160]]
 
 
+def test_longitudes_of_an_axis_are_continued_across_their_jump():
+    lon = np.arange(-180.0, 180.0, 10.0)
+    values = np.cos(np.radians(lon - 3)) + np.linspace(-0.5, 0.5, 5)[:, None]
+
+    def contour(lon, values, unit="degrees_east", **more):
+        return tegl.contour(values, 0.5, coords=[np.arange(5.0), lon], axis_names=("lat", "lon"), axis_units=("", unit),
+                            dtype=np.float64, **more)
+
+    rolled, jumps = np.roll(values, -12, axis=1), np.roll(lon, -12)  # from -60 to 170, then from -180 to -70
+    expected = contour(-60 + np.arange(0.0, 360.0, 10.0), rolled)
+    for coordinates in (jumps, jumps.tolist(), jumps.astype(np.float32)):
+        assert np.array_equal(contour(coordinates, rolled).vertices, expected.vertices)
+    assert jumps[24] == -180  # remains
+    around = contour(jumps, rolled, periodic="auto")
+    assert around.periods.tolist() == [[0, 360]] and around.check().is_closed == contour(lon, values, periodic="lon").check().is_closed
+    assert around.measure().size == pytest.approx(contour(lon, values, periodic="lon").measure().size, rel=1e-12)
+    with pytest.raises(ValueError, match=r"coordinates 23 and 24 of axis 1 \('lon'\) are 170 and -180; expected them strictly ascending"):
+        contour(jumps, rolled, unit="m")
+    with pytest.raises(ValueError, match=r"coordinates 1 and 2 of axis 1 \('lon'\) are 350 and 0;"):
+        contour([340, 350, 0, 10, 5], np.eye(5))
+
+
 @pytest.mark.filterwarnings("ignore:the curved grid is folded")  # across latitudes
 def test_longitudes_that_span_360_degrees_are_found():
     lon, lat = np.meshgrid(np.arange(0.0, 360.0, 10.0), np.arange(-40.0, 41.0, 10.0))

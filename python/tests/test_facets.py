@@ -150,6 +150,8 @@ def test_the_coordinates_of_the_array_are_those_of_the_facets(tmp_path):
         assert 0 < (tmp_path / name).stat().st_size < size
     with pytest.raises(ValueError, match="ply"):
         facets.save(tmp_path / "polygons.ply")
+    with pytest.raises(ValueError, match=r"facets that are not triangulated: cells of VTK type 7 \(polygons\).*without --facets"):
+        tegl.load(tmp_path / "polygons.vtkhdf")
     for method in ("fan", "zigzag", "halving-chord", "halving-kink", "barycentric"):
         surface = facets.triangulate(method)
         assert surface.check().is_manifold and surface.check().euler == facets.check().euler

@@ -191,6 +191,9 @@ def test_an_index_gives_the_contours_of_the_mesh():
     (dict(level=7.0), ValueError, "level is 7.0; expected a level above"),
     (dict(values=np.zeros(27)), ValueError, "level is 0.0, and all values are 0.0; expected a level between two values"),
     (dict(points=np.zeros((0, 3)), cells={"tetra": []}, values=[]), ValueError, "the mesh has no points; expected some"),
+    (dict(cells={}), ValueError, "the mesh has no cells; expected some, or allow_empty=True"),
+    (dict(cells={"tetra": [[0, 1, 3, 9], [1, 2, 4, 10], [9, 1, 0, 3]]}), ValueError,
+     "cell 2 has the same corners as cell 0; expected each cell once"),
     (dict(normals="sobel"), ValueError, "normals of a mesh are 'sobel'; expected True"),
     (dict(dtype="int32"), ValueError, "expected float32 or float64"),
 ])
@@ -200,6 +203,19 @@ def test_bad_arguments_are_errors_that_name_them(change, error, text):
     with pytest.raises(error) as raised:
         tegl.contour_mesh(**arguments)
     assert text in str(raised.value)
+
+
+def test_levels_that_only_points_without_a_cell_have_are_outside():
+    points, cells, values = np.eye(5)[:, :3], {"tetra": [[0, 1, 2, 3]]}, np.array([0.0, 1.0, 2.0, 3.0, 9.0])
+    index = tegl.MeshIndex(points, cells, values)
+    for contour in (lambda **more: tegl.contour_mesh(points, cells, values, 5.0, **more), lambda **more: index.contour(5.0, **more),
+                    lambda **more: tegl.contour_mesh_facets(points, cells, values, 5.0, **more)):
+        with pytest.raises(ValueError, match="level is 5.0; expected a level above 0.0 and up to 3.0"):
+            contour()
+        assert not len(contour(allow_empty=True).vertices)
+    with pytest.raises(ValueError, match="the mesh has no cells"):
+        tegl.MeshIndex(points, {}, values).contour(5.0)
+    assert not len(tegl.contour_mesh(points, {}, values, 5.0, allow_empty=True).vertices)
 
 
 def test_contours_of_divided_cells():
@@ -281,6 +297,12 @@ def test_contours_of_lattices_and_of_scattered_points():
         tegl.contour_points(points[[0, 1, 2, 3, 4, 0]], np.zeros(6), 0.0)
     with pytest.raises(ValueError, match="shape"):
         tegl.contour_points(points[0], np.zeros(3), 0.0)
+    square, near = [[0, 0], [1, 0], [0, 1], [1, 1]], [[1e-300, 0], [0, 1e-300], [1e-300, 1e-300]]
+    for count, text in ((1, "point 4 is so close to other points that rounding hides it; expected points that are further apart"),
+                        (2, "point 4 and 1 other are so close to other points that rounding hides them"),
+                        (3, "point 4 and 2 others are so close to other points that rounding hides them")):
+        with pytest.raises(ValueError, match=text):
+            tegl.contour_points(square + near[:count], np.arange(4 + count), 0.5)
 
 
 VTU = """<VTKFile type="UnstructuredGrid"><UnstructuredGrid><Piece NumberOfPoints="{points}" NumberOfCells="{cells}">

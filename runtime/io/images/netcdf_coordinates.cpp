@@ -11,6 +11,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <map>
 #include <span>
@@ -51,11 +52,14 @@ Coordinate coordinate_of(const NcFile& file, const NcVariable& variable) {
   const std::string unit = lower(file.text(variable, "units"));
   const std::string name = lower(file.text(variable, "standard_name"));
   const std::string axis = lower(file.text(variable, "axis"));
-  const auto is_degrees = [&](std::string_view to) {
-    return unit.starts_with("degree") && (unit.ends_with(to) || unit.ends_with(fmt::format("_{}", to.substr(0, 1))));
+  const auto is_degrees = [&](std::string_view to) {  // degrees_east, degree_E, degreesE
+    if (!unit.starts_with("degree")) return false;
+    const std::string_view rest = std::string_view(unit).substr(unit.starts_with("degrees") ? 7 : 6);
+    const std::string_view letter = to.substr(0, 1);
+    return rest == letter || (rest.starts_with('_') && (rest.substr(1) == letter || rest.substr(1) == to));
   };
-  if (name == "longitude" || is_degrees("_east")) return Coordinate::longitude;
-  if (name == "latitude" || is_degrees("_north")) return Coordinate::latitude;
+  if (name == "longitude" || is_degrees("east")) return Coordinate::longitude;
+  if (name == "latitude" || is_degrees("north")) return Coordinate::latitude;
   if (name == "projection_x_coordinate" || axis == "x") return Coordinate::projected_x;
   if (name == "projection_y_coordinate" || axis == "y") return Coordinate::projected_y;
   if (axis == "z" || !file.text(variable, "positive").empty()) return Coordinate::vertical;
@@ -72,6 +76,12 @@ Limit limit_of(Coordinate coordinate) {
   if (coordinate == Coordinate::longitude) return {720.0, "-720 to 720"};  // also of other turns
   if (coordinate == Coordinate::latitude) return {90.01, "-90 to 90"};     // rounded numbers
   return {1e19, "at most 1e19"};
+}
+
+/// Whether numbers ascend or descend strictly.
+bool is_monotonic(const std::vector<double>& values) {
+  return std::ranges::adjacent_find(values, std::greater_equal()) == values.end() ||
+         std::ranges::adjacent_find(values, std::less_equal()) == values.end();
 }
 
 /// From the attribute "positive" of a vertical coordinate. Without it, pressures increase downwards (CF conventions,
@@ -135,6 +145,11 @@ AxisOfFile read_axis(const NcFile& file, const NcVariable& variable, std::size_t
     if (wrong != values.end() && (meaning == Coordinate::longitude || meaning == Coordinate::latitude))
       fail(ErrorCode::MalformedFile, file.path(), "coordinate variable '{}': number {} is {}; expected degrees from {}",
            coordinate->name, wrong - values.begin(), *wrong, expected);
+    if (meaning == Coordinate::longitude && !is_monotonic(values)) {
+      std::vector<double> continued = values;
+      continue_longitudes(continued, std::array{continued.size()});
+      if (is_monotonic(continued)) values = std::move(continued);
+    }
     try {
       axis = make_axis(std::move(values));
     } catch (const Error& e) {

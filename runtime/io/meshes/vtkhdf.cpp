@@ -113,6 +113,15 @@ class Reader {
     return values;
   }
 
+  [[noreturn]] void refuse_cells(unsigned type) const {
+    constexpr unsigned kPolygon = 7;  // as `tegl contour --facets` writes them
+    const bool are_facets = type == kPolygon;
+    fail(ErrorCode::UnsupportedData, path_,
+         "{}cells of VTK type {}{}; expected all 3 (lines), all 5 (triangles) or all 10 (tetrahedra){}",
+         are_facets ? "facets that are not triangulated: " : "", type, are_facets ? " (polygons)" : "",
+         are_facets ? ", as contours without --facets have" : "");
+  }
+
   void read_cells() {
     const auto types = numbers<unsigned char>("Types", H5T_NATIVE_UINT8);
     const auto ids = numbers<std::int64_t>("Connectivity", H5T_NATIVE_INT64);
@@ -122,11 +131,7 @@ class Reader {
     for (int dim = 1; dim <= most && !types.empty(); ++dim)
       if (types[0] == kCellTypes[static_cast<std::size_t>(dim)]) mesh_.dim = dim;
     const auto other = std::find_if(types.begin(), types.end(), [&](unsigned char t) { return t != types[0]; });
-    if (!types.empty() && (mesh_.dim == 0 || other != types.end()))
-      fail(ErrorCode::UnsupportedData, path_,
-           "cells of VTK type {}; expected all 3 (lines), all 5 (triangles) or all "
-           "10 (tetrahedra)",
-           mesh_.dim == 0 ? types[0] : *other);
+    if (!types.empty() && (mesh_.dim == 0 || other != types.end())) refuse_cells(mesh_.dim == 0 ? types[0] : *other);
     const std::size_t corners = static_cast<std::size_t>(mesh_.dim) + 1;
     if (types.empty() ? !ids.empty() : ids.size() != types.size() * corners)
       fail(ErrorCode::MalformedFile, path_, "{} vertex numbers of {} cells; expected {}", ids.size(), types.size(),

@@ -17,6 +17,8 @@
 #include "base/common.hpp"
 #include "base/raw_image.hpp"
 #include "tegl/delaunay.hpp"
+#include "tegl/equal_cells.hpp"
+#include "vtk/mesh_times.hpp"
 #include "vtk/point_table.hpp"
 #include "vtk/pvd.hpp"
 #include "vtk/vtk_cells.hpp"
@@ -224,6 +226,26 @@ void check_polyhedra(const FileMesh& mesh, const std::vector<std::size_t>& kept,
   }
 }
 
+/// Two equal cells of a mesh, as text with their numbers in the file; empty if there are none.
+std::string equal_cells_of(const FileMesh& mesh, const StoredCells& stored) {
+  CellLists lists{mesh.types, mesh.corners};
+  if (!mesh.ends.empty())
+    lists = {mesh.types, mesh.corners, mesh.ends, mesh.face_corners, mesh.face_ends, mesh.face_lists_ends};
+  const auto equal = find_equal_cells(lists);
+  if (!equal) return {};
+  const auto number_of = [&](std::size_t cell) { return mesh.numbers.empty() ? cell : mesh.numbers[cell]; };
+  const std::size_t first = number_of(equal->first), second = number_of(equal->second);
+  const auto piece_of = [&](std::size_t cell) {
+    return std::ranges::upper_bound(stored.piece_ends, cell) - stored.piece_ends.begin();
+  };
+  const std::string what = fmt::format("cell {} has the same corners as cell {}", second, first);
+  if (piece_of(first) == piece_of(second)) return what + "; expected each cell once";
+  return fmt::format(
+      "{}: the pieces {} and {} (of {}) repeat cells; expected other cells in each piece, or copies marked "
+      "by 'vtkGhostType'",
+      what, piece_of(first), piece_of(second), stored.piece_ends.size());
+}
+
 template <int N>
 std::vector<Index> delaunay_of(const std::vector<double>& coordinates) {
   std::vector<std::array<double, N>> points(coordinates.size() / N);
@@ -303,6 +325,8 @@ FileMesh read_vtk(const fs::path& path, const CellMeshOptions& options, const Pr
   if (variable.on_cells) mesh.values = means_at_points(mesh.values, stored, kept);
   set_points(stored.points, mesh, path);
   check_polyhedra(mesh, kept, path);
+  if (const std::string equal = equal_cells_of(mesh, stored); !equal.empty())
+    fail(ErrorCode::UnsupportedData, path, "{}", equal);
   mesh.time = file.time();
   mesh.variable = options.variable.empty() ? variable.name : options.variable;
   return mesh;
@@ -357,127 +381,6 @@ std::string difference_of_cells(const FileMesh& one, const FileMesh& first) {
       one.face_lists_ends == first.face_lists_ends)
     return {};
   return first_other_cell(one, first);
-}
-
-/// Puts items of a list into an order.
-template <class Item>
-void reorder(std::vector<Item>& list, const std::vector<std::size_t>& order) {
-  std::vector<Item> sorted;
-  for (const std::size_t i : order) sorted.push_back(std::move(list[i]));
-  list = std::move(sorted);
-}
-
-/// Sorts files and given times, before files are read. Errors: InvalidArgument.
-void sort_files(CellMeshOptions& options, std::vector<fs::path>& files) {
-  if (options.order == SeriesOrder::given) return;
-  if (files.size() == 1)
-    fail(ErrorCode::InvalidArgument, files[0], "is one mesh; expected several for an order of files (--sort)");
-  if (options.order == SeriesOrder::coordinate && options.time_step)
-    throw Error(ErrorCode::InvalidArgument,
-                "files in the order of their times and a time step, which follows the order; expected times");
-  if (!options.times.empty() && options.times.size() != files.size()) return;  // an error of times_of
-  std::vector<std::size_t> order(files.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  if (options.order == SeriesOrder::by_name)
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return natural_less(files[a].native(), files[b].native()); });
-  else if (!options.times.empty())
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return options.times[a] < options.times[b]; });
-  reorder(files, order);
-  if (!options.times.empty()) reorder(options.times, order);
-}
-
-/// Sorts values, and points that move, by the times in the files, if there are no given times. Errors: InvalidArgument
-/// (a file without a time).
-void sort_by_own_times(const CellMeshOptions& options, std::vector<std::optional<double>>& own, CellMesh& mesh) {
-  if (options.order != SeriesOrder::coordinate || !options.times.empty()) return;
-  for (std::size_t i = 0; i < own.size(); ++i)
-    if (!own[i])
-      fail(ErrorCode::InvalidArgument, mesh.files[i],
-           "has no time for the order by times (--sort time); expected one in the file, or given times (--times)");
-  std::vector<std::size_t> order(own.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return *own[a] < *own[b]; });
-  const auto move_blocks = [&](std::vector<double>& list) {
-    const auto size = static_cast<std::ptrdiff_t>(list.size() / order.size());
-    std::vector<double> sorted;
-    for (const std::size_t i : order) {
-      const auto first = list.begin() + static_cast<std::ptrdiff_t>(i) * size;
-      sorted.insert(sorted.end(), first, first + size);
-    }
-    list = std::move(sorted);
-  };
-  move_blocks(mesh.values);
-  if (mesh.points_move) move_blocks(mesh.points);
-  reorder(mesh.files, order);
-  reorder(own, order);
-}
-
-/// Where the times of a series are from.
-enum class TimesFrom { caller, collection, files };
-
-/// Throws InvalidArgument unless times ascend; names the option, or the files, that the times are from.
-void require_ascending(const std::vector<double>& times, const std::vector<fs::path>& files, TimesFrom from,
-                       const fs::path& collection) {
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    if (times[i] > times[i - 1]) continue;
-    const std::string before = files[i - 1].filename().string(), here = files[i].filename().string();
-    const bool are_equal = times[i] == times[i - 1];  // in any order
-    switch (from) {
-      case TimesFrom::caller:
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("the given times (--times) have {} for {} after {} for {}; expected {}", times[i], here,
-                                times[i - 1], before,
-                                are_equal ? "a time of its own for each file"
-                                          : "ascending times in the order of the files, or the files in the order of "
-                                            "their times (--sort time)"));
-      case TimesFrom::collection:
-        fail(ErrorCode::InvalidArgument, collection,
-             "has the timestep {} of {} after {} of {}; expected {}, or given times (--times)", times[i], here,
-             times[i - 1], before,
-             are_equal ? "a time of its own for each file" : "ascending times: the order by times (--sort time)");
-      case TimesFrom::files:
-        fail(ErrorCode::InvalidArgument, files[i],
-             "has the time {} (TimeValue), after {} of {}; expected {}, or given times (--times)", times[i],
-             times[i - 1], before,
-             are_equal ? "a time of its own for each file"
-                       : "ascending times: the files in the order of their times (--sort time)");
-    }
-  }
-}
-
-/// The times of files; empty for a single file without one. `collection`: the .pvd file that options.times are from;
-/// empty: none.
-std::vector<double> times_of(const std::vector<std::optional<double>>& own, const CellMeshOptions& options,
-                             const std::vector<fs::path>& files, const fs::path& collection) {
-  std::vector<double> times = options.times;
-  TimesFrom from = !collection.empty() ? TimesFrom::collection : TimesFrom::caller;
-  const bool are_given = !times.empty() || options.time_step;
-  if (are_given && own.size() == 1)
-    fail(ErrorCode::InvalidArgument, files[0],
-         "is one mesh; expected several for times (--times) or a time step (--time-step)");
-  if (!times.empty() && options.time_step)
-    throw Error(ErrorCode::InvalidArgument, "times and a time step; expected one of the two");
-  if (own.size() == 1) return {};
-  if (const auto step = options.time_step;
-      step && !(*step > 0.0 && std::isfinite(*step * static_cast<double>(own.size() - 1))))
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("the time step (--time-step) is {}; expected a positive number for which the times of all "
-                            "files are finite",
-                            *step));
-  for (std::size_t i = 0; i < own.size() && options.time_step; ++i)
-    times.push_back(static_cast<double>(i) * *options.time_step);
-  if (!times.empty() && times.size() != own.size())
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} times for {} files; expected one for each", times.size(), own.size()));
-  const bool is_known = std::all_of(own.begin(), own.end(), [](const auto& time) { return time.has_value(); });
-  if (times.empty()) {
-    from = TimesFrom::files;  // or numbers, which ascend
-    for (std::size_t i = 0; i < own.size(); ++i) times.push_back(is_known ? *own[i] : static_cast<double>(i));
-  }
-  require_ascending(times, files, from, collection);
-  return times;
 }
 
 template <int N>
@@ -611,6 +514,19 @@ std::vector<std::array<double, 2>> bounds_of(const std::vector<double>& points, 
   return bounds;
 }
 
+/// A remark on two equal cells; empty if there are none, or if cells are of types that have no contour.
+std::string remark_on_equal_cells(const StoredCells& stored, const fs::path& path) {
+  FileMesh mesh;
+  std::vector<std::size_t> kept;
+  try {
+    add_cells(stored, mesh, kept, path);
+  } catch (const Error&) {
+    return {};  // the types are listed
+  }
+  const std::string equal = equal_cells_of(mesh, stored);
+  return equal.empty() ? equal : fmt::format("{}: {}", path.string(), equal);
+}
+
 CellMeshInfo describe_table(const fs::path& path, const CellMeshOptions& options) {
   const PointTable table = read_point_table(path, options.variable, options.work.progress);
   CellMeshInfo info;
@@ -641,6 +557,8 @@ CellMeshInfo describe_cell_mesh(const fs::path& given, const CellMeshOptions& op
   const StoredCells stored = read_cells(file, options.work.progress);
   info.type = file.type();
   if (std::string remark = file.remark_on_extension(); !remark.empty()) info.remarks.push_back(std::move(remark));
+  if (std::string remark = remark_on_equal_cells(stored, path); !remark.empty())
+    info.remarks.push_back(std::move(remark));
   info.points = stored.point_count();
   std::map<std::uint8_t, std::uint64_t> counts;
   for (const std::uint8_t type : stored.types) ++counts[type];

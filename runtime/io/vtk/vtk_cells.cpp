@@ -367,6 +367,7 @@ StoredCells read_cells(const VtkFile& file, const Progress& progress) {
     for (const XmlElement* const piece : file.pieces()) {
       append_piece(file, *piece, all);
       piece_ends.push_back(all.point_count());
+      all.piece_ends.push_back(all.types.size());
       tick(progress, 0.5, file.path());
     }
     all.same_point.resize(static_cast<std::size_t>(all.point_count()));

@@ -23,6 +23,7 @@ struct StoredCells {
   std::vector<std::uint64_t> face_lists_ends;  ///< #C, end of each cell's faces in `face_ends`
   std::vector<Index> same_point;               ///< #P: the point of an earlier piece at the same place, or itself
   std::vector<bool> is_hidden;                 ///< #C: hidden or a duplicate by vtkGhostType; may be empty
+  std::vector<std::uint64_t> piece_ends;       ///< end of each piece's cells; of a StructuredGrid empty
   [[nodiscard]] std::uint64_t point_count() const { return points.size() / 3; }
 };
 

@@ -20,6 +20,7 @@
 #include "base/sample_reader.hpp"
 #include "base/sample_values.hpp"
 #include "vtk/encoded_bytes.hpp"
+#include "vtk/markup_filter.hpp"
 
 namespace tegl::io_detail {
 
@@ -187,8 +188,9 @@ std::uint64_t VtkFile::header_number(EncodedBytes& bytes, const VtkArray& array,
   return number;
 }
 
-void VtkFile::inflate_blocks(EncodedBytes& bytes, const VtkArray& array, std::optional<std::uint64_t> count,
-                             std::uint64_t item, std::vector<unsigned char>& to, const Progress& progress) const {
+std::uint64_t VtkFile::inflate_blocks(EncodedBytes& bytes, const VtkArray& array, std::optional<std::uint64_t> count,
+                                      std::uint64_t item, std::vector<unsigned char>& to,
+                                      const Progress& progress) const {
   // sizes
   const std::uint64_t blocks = header_number(bytes, array, "the number of its blocks");
   const std::uint64_t size = header_number(bytes, array, "the size of its blocks");
@@ -228,6 +230,17 @@ void VtkFile::inflate_blocks(EncodedBytes& bytes, const VtkArray& array, std::op
            named(array), b, blocks, expected);
     tick(progress, static_cast<double>(b) / static_cast<double>(blocks), path_);
   }
+  return sum;
+}
+
+void VtkFile::require_end(EncodedBytes& bytes, const VtkArray& array, std::uint64_t length) const {
+  std::array<unsigned char, 4096> block{};
+  std::uint64_t more = 0;
+  for (std::size_t found = bytes.read(block); found > 0; found = bytes.read(block)) more += found;
+  if (more == 0) return;
+  fail(ErrorCode::MalformedFile, path_, "{} has {} bytes by its header, and {} in base64; expected equal numbers{}",
+       named(array), length, length + more,
+       header_bytes_ == 4 ? ", or header_type=\"UInt64\" in <VTKFile> for headers of 8 bytes" : "");
 }
 
 template <class T>
@@ -236,8 +249,10 @@ void VtkFile::read_bytes_of(const VtkArray& array, std::optional<std::uint64_t> 
   const Place place = place_of(array);
   EncodedBytes bytes(path_, place.begin, place.end, place.is_base64);
   std::vector<unsigned char> read;
+  const bool is_alone = place.is_base64 && place.end == array.element->text_end;  // no other array follows
   if (compressed_) {
-    inflate_blocks(bytes, array, count, sizeof(T), read, progress);
+    const std::uint64_t stored = inflate_blocks(bytes, array, count, sizeof(T), read, progress);
+    if (is_alone) require_end(bytes, array, stored);
     to.resize(read.size() / sizeof(T));
     if (!read.empty()) std::memcpy(to.data(), read.data(), read.size());
   } else {
@@ -254,6 +269,7 @@ void VtkFile::read_bytes_of(const VtkArray& array, std::optional<std::uint64_t> 
         fail(ErrorCode::MalformedFile, path_, "{} ends before its {} bytes", named(array), size);
       tick(progress, static_cast<double>(at) / static_cast<double>(all.size()), path_);
     }
+    if (is_alone) require_end(bytes, array, size);
   }
   if (swapped_) swap_bytes(std::span<T>(to));
 }
@@ -267,6 +283,7 @@ void VtkFile::read_text(const VtkArray& array, std::optional<std::uint64_t> coun
   if (count) to.reserve(static_cast<std::size_t>(std::min(*count, bytes.at_most() / 2 + 1)));
   std::array<unsigned char, 4096> block{};
   std::string word;
+  MarkupFilter markup;
   const auto end_word = [&] {
     if (word.empty()) return;
     T value{};
@@ -277,18 +294,23 @@ void VtkFile::read_text(const VtkArray& array, std::optional<std::uint64_t> coun
     word.clear();
   };
   constexpr std::size_t kLongest = 1000;
+  const auto add = [&](char c) {
+    if (c == ' ' || (c >= '\t' && c <= '\r'))
+      end_word();
+    else if (word.size() < kLongest)
+      word += c;
+    else
+      fail(ErrorCode::MalformedFile, path_, "number {} of {} has more than {} characters: {}...; expected {}",
+           to.size(), named(array), kLongest, shown(word), expected_numbers<T>(array.type));
+  };
   const std::uint64_t all = bytes.at_most();
   for (std::size_t found = bytes.read(block); found > 0; found = bytes.read(block)) {
     tick(progress, 1.0 - static_cast<double>(bytes.at_most()) / static_cast<double>(all), path_);
-    for (const unsigned char c : std::span(block).first(found)) {
-      if (c == ' ' || (c >= '\t' && c <= '\r'))
-        end_word();
-      else if (word.size() < kLongest)
-        word += static_cast<char>(c);
+    for (const unsigned char c : std::span(block).first(found))
+      if (markup.concerns(static_cast<char>(c)))
+        for (const char text : markup.text_of(static_cast<char>(c))) add(text);
       else
-        fail(ErrorCode::MalformedFile, path_, "number {} of {} has more than {} characters: {}...; expected {}",
-             to.size(), named(array), kLongest, shown(word), expected_numbers<T>(array.type));
-    }
+        add(static_cast<char>(c));
   }
   end_word();
   if (count && to.size() != *count)

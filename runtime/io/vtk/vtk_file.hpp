@@ -87,8 +87,11 @@ class VtkFile {
   void read_bytes_of(const VtkArray& array, std::optional<std::uint64_t> count, ValueVector<T>& to,
                      const Progress& progress) const;
   [[nodiscard]] std::uint64_t header_number(class EncodedBytes& bytes, const VtkArray& array, const char* what) const;
-  void inflate_blocks(class EncodedBytes& bytes, const VtkArray& array, std::optional<std::uint64_t> count,
-                      std::uint64_t item, std::vector<unsigned char>& to, const Progress& progress) const;
+  /// Returns the bytes of the compressed blocks.
+  std::uint64_t inflate_blocks(class EncodedBytes& bytes, const VtkArray& array, std::optional<std::uint64_t> count,
+                               std::uint64_t item, std::vector<unsigned char>& to, const Progress& progress) const;
+  /// Throws if bytes follow those that the header of an array in base64 names: `length`.
+  void require_end(class EncodedBytes& bytes, const VtkArray& array, std::uint64_t length) const;
 
   std::filesystem::path path_;
   XmlFile xml_;

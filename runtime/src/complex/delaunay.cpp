@@ -199,10 +199,14 @@ constexpr CellType simplex_type(int dim) {
   for (const Index p : corners) is_used[p] = true;
   const auto lost = std::find(is_used.begin(), is_used.end(), false);
   if (lost == is_used.end()) return;
+  const auto others = std::count(lost + 1, is_used.end(), false);
   refuse(
-      fmt::format("point {} and {} others are so close to other points that rounding hides them; expected points "
-                  "that are further apart",
-                  lost - is_used.begin(), std::count(lost + 1, is_used.end(), false)));
+      fmt::format("point {}{} so close to other points that rounding hides {}; expected points that are further apart",
+                  lost - is_used.begin(),
+                  others == 0   ? " is"
+                  : others == 1 ? " and 1 other are"
+                                : fmt::format(" and {} others are", others),
+                  others == 0 ? "it" : "them"));
 }
 
 }  // namespace

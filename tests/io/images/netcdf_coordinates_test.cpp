@@ -141,6 +141,39 @@ TEST(NetCdfCoordinates, OfAxesThatAreTooLargeAreErrors) {
                [&] { (void)read_image(dir / "a.nc"); });
 }
 
+TEST(NetCdfCoordinates, LongitudesOfAnAxisAreContinuedAcrossTheirJump) {
+  const TempDir dir;
+  const auto write = [&](const std::vector<double>& longitudes, const std::string& unit) {
+    NcWriter file(dir / "a.nc");
+    const int y = file.dimension("y", 2), x = file.dimension("lon", static_cast<std::size_t>(longitudes.size()));
+    const int lon = file.variable("lon", NC_DOUBLE, {x}), v = file.variable("v", NC_FLOAT, {y, x});
+    file.text(lon, "units", unit);
+    file.end();
+    file.values(lon, longitudes);
+    file.values(v, counting<double>(2 * longitudes.size(), 0));
+  };
+  const auto axis = [&] {
+    const ReadImageResult image = read_image(dir / "a.nc");
+    const Axis& read = std::get<OwnedImage<float, 2>>(std::get<AnyImageN<2>>(image.image)).grid.axes[0];
+    std::vector<double> coordinates;
+    for (std::size_t i = 0; i < read.size(); ++i) coordinates.push_back(read[i]);
+    return coordinates;
+  };
+  write({0, 90, 179, -170, -90}, "degrees_east");
+  EXPECT_THAT(axis(), testing::ElementsAre(0, 90, 179, 190, 270));
+  write({-90, -170, 179, 90}, "degree_E");
+  EXPECT_THAT(axis(), testing::ElementsAre(-90, -170, -181, -270));
+  write({350, 0, 10}, "degrees_east");
+  EXPECT_THAT(axis(), testing::ElementsAre(350, 360, 370));
+  write({0, 200, 300}, "degrees_east");  // ascend: remain, though the first step is more than half a turn
+  EXPECT_THAT(axis(), testing::ElementsAre(0, 200, 300));
+  write({0, 90, 179, -170, -90}, "m");
+  expect_error(ErrorCode::InvalidGrid, {"a.nc", "'lon'", "179 and -170", "ascending"},
+               [&] { (void)read_image(dir / "a.nc"); });
+  write({340, 350, 0, 10, 5}, "degrees_east");  // also with its turns it descends at its end
+  expect_error(ErrorCode::InvalidGrid, {"a.nc", "'lon'", "350 and 0"}, [&] { (void)read_image(dir / "a.nc"); });
+}
+
 TEST(NetCdfCoordinates, OfAProjectedPlaneAreCurvedAxesIfAttributesSaySo) {
   const TempDir dir;
   Plane plane = projected();

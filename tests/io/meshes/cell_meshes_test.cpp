@@ -10,6 +10,7 @@
 #include "io_support.hpp"
 #include "tegl/check.hpp"
 #include "tegl/delaunay.hpp"
+#include "tegl/equal_cells.hpp"
 
 namespace tegl::test {
 namespace {
@@ -239,6 +240,136 @@ TEST(CellMesh, GhostTypesAreReadFromAllPiecesAndMustBeWhole) {
   EXPECT_THAT(mesh.remarks[0], testing::HasSubstr("hidden by vtkGhostType are left out: 2"));
   write_file(dir / "b.vtu", file(piece("0 nan", "Float32")));
   expect_error(ErrorCode::MalformedFile, {"vtkGhostType", "float", "UInt8"}, [&] { read(dir / "b.vtu"); });
+}
+
+TEST(CellMesh, MarkupWithinNumbersIsTakenOut) {
+  TempDir dir;
+  const auto values = [&](const std::string& text) {
+    write_file(dir / "a.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points(text)));
+    return read(dir / "a.vtu").values;
+  };
+  const std::vector<double> expected = {0, 1, 25, 3, 4};
+  for (const std::string& text : {
+           std::string("<!-- five numbers: 9 8 7 --> 0 1 25 3 4"),
+           std::string("0 1 2<!---->5 3 4<!-- > -->"),
+           std::string("<![CDATA[0 1 25]]> 3 <![CDATA[4]]>"),
+           std::string("0 <?note 1 ?> 1 2<![CDATA[5 3]]> 4"),
+       })
+    EXPECT_EQ(values(text), expected) << text;
+  EXPECT_EQ(values("0 1 25 3 <!--" + std::string(9000, '<') + " - - > --> 4"), expected);
+  const auto refuse = [&](const std::string& text, const std::string& part) {
+    expect_error(ErrorCode::MalformedFile, {"a.vtu", part}, [&] { values(text); });
+  };
+  refuse("0 1 25 3 <!-- 4 -->", "4 numbers; expected 5");
+  refuse("0 1 <![CDATA[25]]]> 3 4", "25]");
+  refuse("0 1 25] 3 4", "25]");
+}
+
+TEST(CellMesh, Base64OfAnotherLengthThanItsHeaderIsAnError) {
+  TempDir dir;
+  const auto read_values = [&](const std::string& base64, const std::string& header) {
+    std::string text = vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4"));
+    text.insert(text.find("version=\"0.1\""), header);
+    const std::size_t at = text.find("format=\"ascii\" Name=\"f\">0 1 2 3 4");
+    text.replace(at, std::string("format=\"ascii\" Name=\"f\">0 1 2 3 4").size(),
+                 "format=\"binary\" Name=\"f\">\n" + base64 + "\n");
+    write_file(dir / "a.vtu", text);
+    return read(dir / "a.vtu").values;
+  };
+  // the numbers 1 to 5 after the number of their bytes, 40
+  const std::string numbers = "AAAAAAAA8D8AAAAAAAAAQAAAAAAAAAhAAAAAAAAAEEAAAAAAAAAUQA==";
+  const std::string narrow = "KAAAAA==", wide = "KAAAAAAAAAA=";
+  const std::vector<double> expected = {1, 2, 3, 4, 5};
+  EXPECT_EQ(read_values(narrow + numbers, ""), expected);
+  EXPECT_EQ(read_values(wide + numbers, "header_type=\"UInt64\" "), expected);
+  expect_error(ErrorCode::MalformedFile,
+               {"a.vtu", "'f' has 40 bytes by its header, and 44 in base64", "header_type=\"UInt64\""},
+               [&] { read_values("KAAAAAAAAAAAAAAAAADwPwAAAAAAAABAAAAAAAAACEAAAAAAAAAQQAAAAAAAABRA", ""); });
+  expect_error(ErrorCode::MalformedFile, {"a.vtu", "'f' has 40 bytes by its header, and 43 in base64"},
+               [&] { read_values(wide + numbers + "AAAA", "header_type=\"UInt64\" "); });
+}
+
+TEST(CellMesh, PiecesThatRepeatCellsAreErrorsThatNameThem) {
+  // a line before the cells; the second piece has its own points, and the cells in the other order
+  const std::string one = vtu(kPoints, "0 1 " + kCorners, "2 6 10", "3 10 10", on_points("0 1 2 3 4"), "5 3");
+  const std::string other = vtu(kPoints, "1 2 3 4 0 1 2 3", "4 8", "10 10", on_points("0 1 2 3 4"), "5 2");
+  const auto piece = [](const std::string& text) {
+    const std::size_t begin = text.find("<Piece");
+    return text.substr(begin, text.find("</UnstructuredGrid>") - begin);
+  };
+  TempDir dir;
+  write_file(dir / "a.vtu", "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid>" + piece(one) + piece(other) +
+                                "</UnstructuredGrid></VTKFile>");
+  const std::string text = "cell 3 has the same corners as cell 2: the pieces 0 and 1 (of 2) repeat cells";
+  expect_error(ErrorCode::UnsupportedData, {"a.vtu", text, "vtkGhostType"}, [&] { read(dir / "a.vtu"); });
+  EXPECT_THAT(describe_cell_mesh(dir / "a.vtu").remarks, testing::ElementsAre(testing::HasSubstr(text)));
+  // in one piece
+  write_file(dir / "b.vtu", vtu(kPoints, "0 1 2 3 3 2 1 0", "4 8", "10 10", on_points("0 1 2 3 4")));
+  expect_error(ErrorCode::UnsupportedData, {"b.vtu", "cell 1 has the same corners as cell 0; expected each cell once"},
+               [&] { read(dir / "b.vtu"); });
+  EXPECT_EQ(describe_cell_mesh(dir / "b.vtu").remarks.size(), 1U);
+  write_file(dir / "c.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4")));
+  EXPECT_THAT(describe_cell_mesh(dir / "c.vtu").remarks, testing::IsEmpty());
+}
+
+TEST(EqualCells, AreFoundInCellsOfAllTypes) {
+  const auto find = [](const CellLists& cells) {
+    const auto equal = find_equal_cells(cells);
+    return equal ? std::pair(equal->first, equal->second) : std::pair(std::size_t{0}, std::size_t{0});
+  };
+  EXPECT_EQ(find({}), std::pair(std::size_t{0}, std::size_t{0}));
+  using enum CellType;
+  EXPECT_EQ(find({.types = {tetrahedron, tetrahedron, tetrahedron, tetrahedron},
+                  .corners = {0, 1, 2, 4, 1, 2, 4, 7, 4, 1, 0, 2, 7, 4, 2, 1}}),
+            std::pair(std::size_t{0}, std::size_t{2}));
+  EXPECT_EQ(find({.types = {pyramid, tetrahedron, hexahedron, tetrahedron, voxel},
+                  .corners = {0, 1, 3, 2, 9, 1, 5, 7, 8, 0, 1, 3, 2, 4, 5, 7, 6, 5, 7, 8, 9, 0, 1, 2, 3, 4, 5, 6, 7}}),
+            std::pair(std::size_t{2}, std::size_t{4}));
+  // a polyhedron by its faces alone, and as many corners in another cell
+  EXPECT_EQ(find({.types = {pyramid, tetrahedron, tetrahedron, polyhedron},
+                  .corners = {0, 1, 3, 2, 9, 5, 7, 8, 9, 4, 7, 8, 9},
+                  .ends = {5, 9, 13, 13},
+                  .face_corners = {9, 8, 7, 9, 8, 5, 9, 7, 5, 8, 7, 5},
+                  .face_ends = {3, 6, 9, 12},
+                  .face_lists_ends = {0, 0, 0, 4}}),
+            std::pair(std::size_t{1}, std::size_t{3}));
+  // two 4-simplices by their facets
+  CellLists polytopes{.types = {polytope, simplex4, polytope}, .corners = {1, 2, 3, 4, 5}, .ends = {0, 5, 5}};
+  for (int copy = 0; copy < 2; ++copy)
+    for (Index facet = 0; facet < 5; ++facet) {
+      for (Index face = 0; face < 5; ++face) {
+        if (face == facet) continue;
+        for (Index corner = 0; corner < 5; ++corner)
+          if (corner != facet && corner != face) polytopes.face_corners.push_back(corner);
+        polytopes.face_ends.push_back(polytopes.face_corners.size());
+      }
+      polytopes.facet_ends.push_back(polytopes.face_ends.size());
+    }
+  polytopes.facet_lists_ends = {5, 5, 10};
+  EXPECT_EQ(find(polytopes), std::pair(std::size_t{0}, std::size_t{2}));
+}
+
+TEST(EqualCells, AreFoundAmongManyCells) {
+  // triangles around a point, and tetrahedra of a strip: one point in all cells, and neighbours with near numbers
+  for (const std::size_t corners : {std::size_t{3}, std::size_t{4}}) {
+    CellLists cells;
+    for (Index c = 0; c < 200'000; ++c) {
+      if (corners == 3)
+        cells.corners.insert(cells.corners.end(), {0, c + 1, c + 2});
+      else
+        cells.corners.insert(cells.corners.end(), {c, c + 1, c + 2, c + 3});
+    }
+    cells.types.assign(200'000, corners == 3 ? CellType::triangle : CellType::tetrahedron);
+    EXPECT_FALSE(find_equal_cells(cells));
+    for (const std::size_t copied : {std::size_t{123'456}, std::size_t{77}}) {  // the second copy comes later
+      cells.types.push_back(cells.types[0]);
+      for (std::size_t k = corners; k-- > 0;) cells.corners.push_back(cells.corners[corners * copied + k]);
+      const auto equal = find_equal_cells(cells);
+      ASSERT_TRUE(equal);
+      EXPECT_EQ(equal->first, 123'456U);
+      EXPECT_EQ(equal->second, 200'000U);
+    }
+  }
 }
 
 /// A pentagonal prism as a polyhedron; points 0 to 4 and 5 to 9 are the pentagons.

@@ -81,8 +81,8 @@ struct CellMeshOptions {
 /// Errors, naming the file (and of a table the line): FileNotFound; MalformedFile (damaged, or numbers that contradict
 /// each other; two equal points of a table, two columns of the name of a coordinate or of the chosen one);
 /// UnsupportedFormat (a compressor other than zlib; parallel files, which name others); UnsupportedData (curved cells
-/// and other types; no cells of 2 or 3 dimensions; values of cells without cells_to_points; files of a series that do
-/// not match); VariableNotFound; InvalidArgument (times; cells_to_points with values of points); TooLarge; Cancelled.
+/// and other types; no cells of 2 or 3 dimensions; repeated cells; values of cells without cells_to_points; files of a
+/// series that do not match); VariableNotFound; InvalidArgument (times; values of points); TooLarge; Cancelled.
 [[nodiscard]] CellMesh read_cell_mesh(std::span<const std::filesystem::path> files,
                                       const CellMeshOptions& options = {});
 
@@ -112,7 +112,7 @@ struct CellMeshInfo {
   std::vector<std::array<double, 2>> bounds = {};                 ///< of the points, by axis
   std::vector<CellMeshArray> arrays = {};                         ///< of points, then of cells
   std::vector<double> times = {};                                 ///< of a .pvd file
-  std::vector<std::string> remarks = {};                          ///< an extension of other data, arrays of one name
+  std::vector<std::string> remarks = {};                          ///< other extensions, equal arrays or cells
 };
 
 /// Describes a file; of a .pvd file, its first one. Reads all its arrays. Errors: those of read_cell_mesh.
