@@ -6,9 +6,11 @@
 #include <array>
 #include <cstddef>
 #include <random>
+#include <utility>
 
 #include "tegl/image.hpp"
 #include "tegl/lattice.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl::test {
 
@@ -55,6 +57,22 @@ auto noise_everywhere(unsigned seed) {
   return [random = std::mt19937(seed)](const auto&, const auto&, const auto&) mutable {
     return std::uniform_real_distribution<double>()(random);
   };
+}
+
+/// A grid from 0 whose periods are 1 along all axes.
+template <int N>
+Grid<N> grid_of_torus(const std::array<std::size_t, N>& sizes) {
+  Grid<N> grid;
+  for (int a = 0; a < N; ++a) grid.axes[a] = Axis::uniform(sizes[a], 0.0, 1.0 / static_cast<double>(sizes[a]));
+  return grid;
+}
+
+/// Periods of 1 along the axes with bits in `axes`.
+template <int N>
+AxisPeriods<N> periods_along(unsigned axes) {
+  AxisPeriods<N> periods{};
+  for (int a = 0; a < N; ++a) periods[a] = (axes >> a & 1u) != 0 ? 1.0 : 0.0;
+  return periods;
 }
 
 }  // namespace tegl::test
