@@ -55,11 +55,11 @@ class Case:
 
 CASES = [
     Case("200 metaballs, 512³", "metaballs", 3, 512, ratio={1: 6, 4: 4}),
-    Case("gyroid, 512³", "gyroid", 3, 512, ratio={1: 3, 4: 3}),
-    Case("uniform noise, 256³", "noise", 3, 256, ratio={1: 3, 4: 3}),
-    Case("200 metaballs, 512³, normals", "metaballs", 3, 512, ratio={1: 6, 4: 4}, normals=True),
-    Case("gyroid, 512³, normals", "gyroid", 3, 512, ratio={1: 3, 4: 3}, normals=True),
-    Case("uniform noise, 256³, normals", "noise", 3, 256, ratio={1: 3, 4: 3}, normals=True),
+    Case("gyroid, 512³", "gyroid", 3, 512, ratio={1: 5, 4: 3}),
+    Case("uniform noise, 256³", "noise", 3, 256, ratio={1: 4.5, 4: 3}),
+    Case("200 metaballs, 512³, normals", "metaballs", 3, 512, ratio={1: 5, 4: 4}, normals=True),
+    Case("gyroid, 512³, normals", "gyroid", 3, 512, ratio={1: 5, 4: 3}, normals=True),
+    Case("uniform noise, 256³, normals", "noise", 3, 256, ratio={1: 5, 4: 3}, normals=True),
     Case("metaballs, 8192²", "metaballs", 2, 8192, ratio={1: 5, 4: 4}),
     Case("gyroid, 8192²", "gyroid", 2, 8192, ratio={1: 5, 4: 4}),
     Case("uniform noise, 8192²", "noise", 2, 8192, ratio={1: 4, 4: 4}, skimage=False),

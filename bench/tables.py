@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The figures of bench/results/*.json as tables for readers: writes bench/results/README.md, the table of missed marks in
-bench/README.md, and the tables of resolved ambiguities and of operations in docs/cost.md."""
+bench/README.md, the tables of resolved ambiguities, of operations and of curved and periodic grids in docs/cost.md, and
+those of tilings in docs/other-tilings.md and docs/meshes.md."""
 
 import json
 import re
@@ -10,6 +11,8 @@ import machine
 RESULTS = machine.ROOT / "bench/results"
 MISSED = machine.ROOT / "bench/README.md"
 COST = machine.ROOT / "docs/cost.md"
+TILINGS = machine.ROOT / "docs/other-tilings.md"
+MESHES = machine.ROOT / "docs/meshes.md"
 
 # What bounds a case beside memory, by field and dimension: written by hand, explained in bench/README.md.
 BOUNDS = {
@@ -259,6 +262,110 @@ def write_operations(path) -> None:
         put_between(path, "operations", operations(json.loads(kept.read_text())))
 
 
+# The rows of lattice_bench, as the pages name them.
+LATTICES = {"cubic": "cubic", "fcc": "fcc", "bcc": "bcc", "fcc, complex": "fcc, cells stored"}
+CURVED = {
+    "plain": "plain",
+    "two coordinates in 2D arrays": "[curved](other-tilings.md#curved-grids), two coordinates in 2D arrays",
+    "two, by points (float)": "the same, stored sample by sample (`by_points`)",
+    "three coordinates in 3D arrays": "curved, three coordinates in 3D arrays",
+    "three coordinates in 3D arrays (float)": "the same, arrays of `float`",
+    "three, by points (float)": "the same, stored sample by sample as `float`",
+    "three, by points (double)": "the same, stored sample by sample as `double`",
+    "three, in place, 12 bytes a sample": "the same, points of the caller in place (`CurvedPoints::in_place`), 12 bytes a sample",
+    "three, in place, 24 bytes a sample": "the same, 24 bytes a sample",
+    "reading the lines of the three arrays once": "only reading the coordinates of the three arrays",
+    "reading the lines of the points (float) once": "only reading the coordinates stored as `float`",
+    "reading the lines of the points (double) once": "only reading the coordinates stored as `double`",
+    "last axis periodic": "last axis [periodic](other-tilings.md#periodic-axes)",
+    "first axis periodic": "first axis periodic",
+    "all axes periodic": "all axes periodic",
+}
+MESH_SIDES = {
+    "tegl": "tegl",
+    "tegl, edges known": "tegl, edges known",
+    "tegl, finding edges": "tegl, finding all edges",
+    "vtkContour3DLinearGrid": "`vtkContour3DLinearGrid`, points merged",
+    "vtkContour3DLinearGrid, points not merged": "`vtkContour3DLinearGrid`, points not merged (its default)",
+    "vtkContourFilter": "`vtkContourFilter`",
+}
+
+
+def spaced(number) -> str:
+    return f"{int(number):,}".replace(",", " ")
+
+
+def by_name(rows: list[dict]) -> dict:
+    """Rows of a table by their first column."""
+    return {next(iter(row.values())): row for row in rows}
+
+
+def lattices(result: dict) -> list[str]:
+    rows = by_name(result["lattices"])
+    text = ["| samples | active cells | ms | comparison, ns per sample | ns per active cell |", "|---|---|---|---|---|"]
+    for name, label in LATTICES.items():
+        row = rows[name]
+        text.append(f"| {label} | {spaced(row['active cells'])} | {row['ms']} | {float(row['classify, ns per sample']):.2f} | "
+                    f"{row['ns per active cell']} |")
+    times = float(rows["fcc"]["ns per active cell"]) / float(rows["cubic"]["ns per active cell"])
+    return text + ["", f"An active cell of fcc takes {times:.1f} times the time of a cube: it has up to 12 edges, which lie in more "
+                   "rows of samples than those of a cube."]
+
+
+def curved(result: dict) -> list[str]:
+    rows = by_name(result["curved and periodic grids"])
+    return ["| grid | ms | relative to the plain contour |", "|---|---|---|"] + [
+        f"| {label} | {rows[name]['median, ms']} | {rows[name]['median by the plain one']} |" for name, label in CURVED.items()]
+
+
+def periodic(result: dict) -> list[str]:
+    """A sentence."""
+    rows = by_name(result["curved and periodic grids"])
+    last, first, all_axes = (rows[f"{which} periodic"]["median by the plain one"]
+                             for which in ("last axis", "first axis", "all axes"))
+    return [f"The last axis periodic takes {last} times the time of the plain contour, the first one {first} times, all three "
+            f"{all_axes} times: [cost](cost.md#curved-grids-and-periodic-axes)."]
+
+
+def meshes(result: dict) -> list[str]:
+    times = [{side["side"]: side["ms"] for side in mesh["sides"]} for mesh in result["meshes"]]
+    text = ["| | " + " | ".join(f"{mesh['field']}, {spaced(mesh['sides'][0]['triangles'])} triangles" for mesh in result["meshes"]) +
+            " |", "|---|" + "---|" * len(times)]
+    for name, label in MESH_SIDES.items():
+        text.append(f"| {label} | " + " | ".join(duration(of[name]).removesuffix(" ms") for of in times) + " |")
+
+    def as_long(side: str, own: str) -> str:
+        return " and ".join(f"{of[side] / of[own]:.1f}" for of in times)
+
+    return text + ["", "So " + "; ".join(f"`{side}`{how} takes {as_long(side, 'tegl')} times as long as tegl, and {as_long(side, 'tegl, edges known')} "
+                                         "times as long with known edges" for side, how in
+                                         (("vtkContour3DLinearGrid", " with merged points"), ("vtkContourFilter", ""))) + "."]
+
+
+def types_of_cells(result: dict) -> list[str]:
+    text = ["| cells | triangles per active cell | ns per cell | with edges known |", "|---|---|---|---|"]
+    rows = by_name(result["types of cells"])
+    for name, row in rows.items():
+        label = "all four, mixed" if name == "mixed" else name
+        text.append(f"| {label} | {int(row['triangles']) / int(row['active']):.1f} | {row['ns per cell']} | "
+                    f"{row['ns per cell, edges known']} |")
+    as_long = [float(rows["mixed"][column]) / float(rows["tetrahedra"][column]) for column in ("ns per cell", "ns per cell, edges known")]
+    return text + ["", f"A cell of the mixed mesh takes {as_long[0]:.1f} times as long as one of the tetrahedra, and {as_long[1]:.1f} "
+                   "times with known edges."]
+
+
+def write_tilings() -> None:
+    kept = RESULTS / "tilings.json"
+    if not kept.exists():
+        return
+    result = json.loads(kept.read_text())
+    put_between(COST, "curved and periodic grids", curved(result))
+    put_between(TILINGS, "periodic axes", periodic(result))
+    put_between(TILINGS, "lattices", lattices(result))
+    put_between(MESHES, "meshes", meshes(result))
+    put_between(MESHES, "types of cells", types_of_cells(result))
+
+
 def page(name: str, title: str, how: str, table) -> list[str]:
     """One section, if its file is there."""
     path = RESULTS / f"{name}.json"
@@ -286,6 +393,7 @@ def main() -> None:
     write_missed(MISSED)
     write_resolved(COST)
     write_operations(COST)
+    write_tilings()
 
 
 if __name__ == "__main__":

@@ -160,12 +160,16 @@ void bind_contour(py::module_& m) {
     return c.direction == GradientDirection::descent ? "descent" : "ascent";
   };
   const auto periods = [](const auto& c, const py::object&) { return period_numbers(c.periods); };
-  const auto is_modulo = [](const AnyContour& contour, int axis) {
+  const auto has_all_offsets = [](const AnyContour& contour, const std::vector<double>& normal) {
     return std::visit(
         [&]<int N, class Real>(const Contour<N, Real>& c) {
-          std::vector<Vector<N>> vectors;
-          for (const Period<N>& period : c.periods) vectors.push_back(period.vector);
-          return period_along<N>(vectors, axis).has_value();
+          if constexpr (N >= 3) {
+            if (c.periods.empty() || normal.size() != N) return false;
+            Vector<N> components;
+            std::copy(normal.begin(), normal.end(), components.begin());
+            return cut_period<N>(c.periods, components).has_value();
+          }
+          return false;
         },
         contour.contour);
   };
@@ -191,7 +195,8 @@ void bind_contour(py::module_& m) {
       .def_property_readonly("axis_units", of_contour(units))
       .def_property_readonly("direction", of_contour(direction))
       .def_property_readonly("periods", of_contour(periods), "vector, dual and start of each period, flat")
-      .def("is_modulo", is_modulo, py::arg("axis"), "Whether places across an axis are modulo a period.")
+      .def("has_all_offsets", has_all_offsets, py::arg("normal"),
+           "Whether all hyperplanes with this normal cut the wrapped contour, whatever their offsets.")
       .def_property_readonly("vertex_attributes", of_contour(of_vertices), "name -> (values, unit)")
       .def_property_readonly("simplex_attributes", of_contour(of_simplices), "name -> (values, unit)")
       .def_readonly("isovalue", &AnyContour::isovalue);

@@ -23,7 +23,7 @@ import numpy as np
 
 from . import _dates, _kinds, _tegl
 from ._xarrays import (INDEX_SUFFIX, TIME_NAMES, curved_names, in_order, is_xarray, own_curved,
-                       without_longitude_and_latitude)
+                       without_longitude_and_latitude, without_replaced)
 
 _TYPES = ("uint8", "int8", "uint16", "int16", "int32", "float32", "float64")
 
@@ -348,6 +348,11 @@ def _from_xarray(data) -> tuple[list, list[str], list[str], int | None, str]:
     return coordinates, names, units, time_axis, str(data.attrs.get("units", ""))
 
 
+def without_curved(data) -> str:
+    """For errors: the part of an image with a curved grid that has indices as coordinates."""
+    return f"drop_vars({list(curved_names(data).values())})" if is_xarray(data) else "its `array`"
+
+
 def own_lattice(data) -> str | None:
     """The lattice that an image of tegl.read or the attribute "sample_lattice" of an xarray records, or None."""
     if is_xarray(data):
@@ -447,12 +452,18 @@ def _masked(array: np.ndarray, mask) -> np.ndarray:
     return np.where(mask, array, kind.type(np.nan)).astype(kind, copy=False)
 
 
+def listed_coords(coords) -> list:
+    return as_list("coords", coords, "the coordinates of each axis, or None for one")
+
+
 def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=None, axis_names=None, axis_units=None,
-            time_axis=None, allow_curved: bool = False, allow_lattice: bool = False) -> Prepared:
-    """The library's view of an array. Values are copied only if the type or a mask requires it."""
+            time_axis=None, hidden: np.ndarray | None = None, allow_curved: bool = False,
+            allow_lattice: bool = False) -> Prepared:
+    """The library's view of an array. Values are copied only if the type or a mask requires it. `hidden`: True for other
+    samples that are missing; of another shape, it is left out of account."""
     if not allow_curved and own_curved(data):
-        indices = f"drop_vars({list(curved_names(data).values())})" if is_xarray(data) else "its `array`"
-        raise ValueError(f"an image with a curved grid, which only tegl.contour and tegl.filter know; expected {indices}, with "
+        raise ValueError("an image with a curved grid, which only tegl.contour and tegl.filter know; expected "
+                         f"{without_curved(data)}, with "
                          "indices as coordinates, or a contour")
     if not allow_lattice and own_lattice(data) not in (None, "cubic"):
         raise ValueError(f"an image on the lattice {own_lattice(data)}, which only tegl.contour and tegl.count know; expected "
@@ -494,9 +505,11 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
     array = _values(array)
     if mask is not None:
         array = _masked(array, mask if labelled is None or not is_xarray(mask) else in_order(mask, labelled))
+    if hidden is not None and hidden.ndim == ndim and all(n in (1, size) for n, size in zip(hidden.shape, array.shape)):
+        array = _masked(array, np.broadcast_to(~hidden, array.shape))
     if coords is None:
         coords = known if spacing is None and origin is None else None
-    elif len(coords := as_list("coords", coords, "the coordinates of each axis, or None for one")) != ndim:
+    elif len(coords := listed_coords(coords)) != ndim:
         raise ValueError(f"coords has {len(coords)} entries; expected one for each of {ndim} axes")
     spacings, origins = _per_axis(spacing, ndim, "spacing", 1.0), _per_axis(origin, ndim, "origin", 0.0)
     if coords is not None and (spacing is not None or origin is not None):

@@ -157,7 +157,7 @@ class Contour(ArrayOrdered):
 
     def _require_places(self, axis: int, places: Sequence[float], given: Sequence) -> None:
         """Raises a ValueError unless all places along an axis lie in that extent. A periodic axis has every place."""
-        if self._core.is_modulo(self.ndim - 1 - axis if self._is_reversed else axis):
+        if self._core.has_all_offsets(self._listed([float(a == axis) for a in range(self.ndim)])):
             return
         extent, of = self._extent_around()
         _outside.require_places(extent, axis, places, given, self.vertices.dtype, self.axis_names[axis],
@@ -209,7 +209,7 @@ class Contour(ArrayOrdered):
             places: typing.Any = _arguments.as_numbers("offset", offset) if is_list(offset) else \
                 _arguments.as_number("offset", offset)
             left = None
-            if is_checked:
+            if is_checked and not self._core.has_all_offsets(self._listed(direction)):
                 extent, of = self._extent_around()
                 _outside.require_offsets(extent, direction, places if is_list(offset) else [places], self.vertices.dtype, of)
         else:

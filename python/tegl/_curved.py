@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import typing
 import warnings
 from collections.abc import Mapping, Sequence
@@ -10,6 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from . import _arguments, _tegl
+from ._xarrays import NORTH
 
 #: A coordinate for the library: axis, set of axes that it differs along, numbers, from one to the next one of them, unit.
 Coordinate = tuple[int, int, "np.ndarray[typing.Any, typing.Any]", int, str]
@@ -32,16 +34,17 @@ class CurvedGrid:
         """
         coordinates
             As the argument `curved` of `tegl.contour`: a dict of axes and arrays, or an array of the shape (..., N). They are
-            copied; as float32 if this represents all of them exactly.
+            copied; as float32 if this represents all of them exactly. Masked ones become NaN, and their samples are missing.
         threads
             Number of threads for the copy; 0: all processors.
         """
+        self._masked = masked_samples(coordinates)
         arrays = {key: _numbers(f"curved[{key!r}]", values) for key, values in _by_axis(coordinates).items()}
         self._threads = _arguments.threads_of(threads)
         self._coordinates = _stored(arrays, "C", self._threads)
         self._in_fortran_order: dict[int | str, np.ndarray] = {}
         self._folds: dict[tuple, tuple[int, list[int]]] = {}
-        self._continued: dict[tuple, np.ndarray] = {}
+        self._places: dict[tuple, tuple[np.ndarray, str]] = {}
 
     @property
     def coordinates(self) -> dict[int | str, np.ndarray]:
@@ -61,12 +64,29 @@ class CurvedGrid:
         return f"<tegl.CurvedGrid {arrays}>"
 
 
-def coordinates_of(curved: object, prepared: _arguments.Prepared) -> list[Coordinate]:
+def masked_samples(curved: object) -> np.ndarray | None:
+    """Where a coordinate is masked, with size 1 along the axes on which no mask depends; None if none is, or if the arrays do
+    not fit to each other."""
+    if isinstance(curved, CurvedGrid):
+        return curved._masked
+    if not isinstance(curved, Mapping):
+        mask = np.ma.getmaskarray(curved) if np.ma.is_masked(curved) else np.False_
+        return mask.any(axis=-1) if mask.ndim > 1 else None
+    masks = [np.ma.getmask(one) for one in curved.values() if np.ma.is_masked(one)]
+    try:
+        return np.logical_or.reduce(np.broadcast_arrays(*masks)) if masks else None
+    except ValueError:
+        return None
+
+
+def coordinates_of(curved: object, prepared: _arguments.Prepared) -> tuple[list[Coordinate], str]:
     """The argument `curved` for the library. Arrays of float32 and float64 are used in place if the library's order of
-    samples is theirs. Longitudes are continued across 180 degrees; those of a CurvedGrid once."""
-    result = []
-    continued = curved._continued if isinstance(curved, CurvedGrid) else {}
+    samples is theirs. Longitudes are continued across 180 degrees; those of a CurvedGrid once. Numbers that cannot be places
+    become NaN; the second result names the first one, if there is any."""
+    result, no_place = [], ""
+    known = curved._places if isinstance(curved, CurvedGrid) else {}
     arrays = curved._in_order(prepared.is_reversed) if isinstance(curved, CurvedGrid) else _by_axis(curved, prepared.sizes)
+    are_small = isinstance(curved, np.ndarray) and _are_small(curved)  # of points at once, as they are side by side
     for key, given in arrays.items():
         axis = prepared.library_axis(key)
         values = _numbers(f"curved[{key!r}]", given)
@@ -76,12 +96,23 @@ def coordinates_of(curved: object, prepared: _arguments.Prepared) -> list[Coordi
         along = sum(1 << (prepared.ndim - 1 - a if prepared.is_reversed else a)
                     for a, size in enumerate(values.shape) if size > 1)
         unit = prepared.units[prepared.ndim - 1 - axis if prepared.is_reversed else axis]
-        if _tegl.is_longitude_unit(unit):
-            if (key, prepared.is_reversed) not in continued:
-                continued[key, prepared.is_reversed] = _continued(values, prepared)
-            values = continued[key, prepared.is_reversed]
+        if (key, prepared.is_reversed, unit) not in known:
+            known[key, prepared.is_reversed, unit] = _places(f"curved[{key!r}]", values, unit, are_small, prepared)
+        values, wrong = known[key, prepared.is_reversed, unit]
+        no_place = no_place or wrong
         result.append((axis, along, *_evenly_spaced(values, prepared.is_reversed), unit))
-    return result
+    return result, no_place
+
+
+@contextlib.contextmanager
+def naming(no_place: str) -> typing.Iterator[None]:
+    """Adds a number that cannot be a place to the library's error about unknown coordinates."""
+    try:
+        yield
+    except ValueError as error:
+        if not no_place or "unknown coordinates" not in str(error):
+            raise
+        raise type(error)(f"{error}. {no_place}") from None
 
 
 def warn_of_folds(curved: object, prepared: _arguments.Prepared, of_samples: list[Coordinate], axes: Sequence[int],
@@ -109,6 +140,8 @@ def _by_axis(curved: object, sizes: tuple[int, ...] | None = None) -> Mapping[in
         raise TypeError(f"curved is {curved!r}; expected a dict of axes and arrays of coordinates, an array with the "
                         "coordinates along its last axis, or a tegl.CurvedGrid")
     points = _arguments.real("curved", curved)
+    if isinstance(curved, np.ma.MaskedArray):
+        points = curved
     ndim = points.ndim - 1 if sizes is None else len(sizes)
     if points.ndim < 2 or points.ndim != ndim + 1 or points.shape[-1] != ndim:
         expected = "(..., N) with N other axes" if sizes is None else f"{(*sizes, ndim)}"
@@ -135,17 +168,49 @@ def _stored(arrays: Mapping[int | str, np.ndarray], order: typing.Literal["C", "
 
 
 def _numbers(name: str, given: object) -> np.ndarray:
-    """Coordinates as float32 or float64 that the library can read in place; others are converted to float64."""
+    """Coordinates as float32 or float64 that the library can read in place; others are converted to float64. Masked ones are
+    NaN."""
     values = _arguments.real(name, given)
-    if values.dtype in (np.float32, np.float64) and values.dtype.isnative and values.flags.aligned:
-        return values
-    return values.astype(np.float64)
+    if not (values.dtype in (np.float32, np.float64) and values.dtype.isnative and values.flags.aligned):
+        values = values.astype(np.float64)
+    return np.where(np.ma.getmaskarray(given), values.dtype.type(np.nan), values) if np.ma.is_masked(given) else values
+
+
+#: Numbers beyond this, such as 1e20, mark missing coordinates, as in files.
+_MOST = 1e19
+
+
+def _are_small(values: np.ndarray) -> bool:
+    """Whether it is certain, in one pass, that no number is beyond _MOST."""
+    if values.dtype not in (np.float32, np.float64) or not values.flags.forc:
+        return False
+    flat = np.asarray(values).ravel(order="K")
+    with np.errstate(all="ignore"):
+        return bool(np.vdot(flat, flat) < _MOST**2)  # False for NaN
+
+
+def _places(name: str, values: np.ndarray, unit: str, are_small: bool,
+            prepared: _arguments.Prepared) -> tuple[np.ndarray, str]:
+    """Coordinates with NaN for numbers that cannot be places, as in files, and longitudes continued across 180 degrees: a
+    copy if any must change. Also a text about the first such number, or none. `are_small`: none is beyond _MOST."""
+    is_longitude = _tegl.is_longitude_unit(unit)
+    most, expected = ((720.0, "-720 to 720") if is_longitude else (90.01, "-90 to 90") if unit in NORTH else
+                      (_MOST, "at most 1e19"))
+    if most == _MOST and (are_small or _are_small(values)):
+        return values, ""
+    least, greatest, no_place = np.fmin.reduce(values, axis=None), np.fmax.reduce(values, axis=None), ""
+    if least < -most or greatest > most:
+        wrong = np.abs(values) > most
+        first = tuple(int(i) for i in np.argwhere(wrong)[0])
+        no_place = (f"{name}[{', '.join(map(str, first))}] is {values[first]:g}, which cannot be a place (expected {expected}); "
+                    "the mask of a masked array, as of numpy.ma.masked_equal, hides such samples")
+        values = np.where(wrong, values.dtype.type(np.nan), values)
+        least, greatest = np.fmin.reduce(values, axis=None), np.fmax.reduce(values, axis=None)
+    return _continued(values, prepared) if is_longitude and greatest - least > 180 else values, no_place
 
 
 def _continued(values: np.ndarray, prepared: _arguments.Prepared) -> np.ndarray:
     """Longitudes continued across 180 degrees: a copy if any must be."""
-    if not np.fmax.reduce(values, axis=None) - np.fmin.reduce(values, axis=None) > 180:
-        return values
     order: typing.Literal["C", "F"] = "C" if prepared.is_reversed else "F"
     result = np.array(values, dtype=np.float64, order=order)
     _tegl.continue_longitudes(result.reshape(-1, order=order), prepared.turned(values.shape))

@@ -83,10 +83,12 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     periodic
         Axes that are periodic: a name or number, or "lon" or "longitude" for the axis along which longitudes run around
         the globe, a list of these, "all", a dict of axes and their periods, or "auto": the
-        longitudes (by their unit, degrees_east) that span 360 degrees, if there are any; None or "none": no axis. Without a dict, the period is the number of samples x the step, or 360 for axes with a unit of degrees_east. The contour is *wrapped*: it continues
-        across the seam, and `Contour.unroll` makes one for pictures. On a curved grid, the last samples along the axis
-        are connected to the first ones: at their own places (O-grids), 360 further along longitudes, or by a given period
-        along the axis's own coordinate, in the direction in which that grows. See docs/other-tilings.md.
+        longitudes (by their unit, degrees_east) that span 360 degrees, if there are any; None or "none": no axis. Without a
+        dict, the period is the number of samples x the step, or 360 for axes with a unit of degrees_east. It must be more
+        than twice each step, the one across the seam included. The contour is *wrapped*: it continues across the seam, and
+        `Contour.unroll` makes one for pictures. On a curved grid, the last samples along the axis are connected to the first
+        ones: at their own places (O-grids), 360 further along longitudes, or by a given period along the axis's own
+        coordinate, in the direction in which that grows. See docs/other-tilings.md.
 
     lattice
         Samples on a staggered lattice: the odd layers of the last library axis (of C-ordered arrays, the first axis) are
@@ -119,8 +121,9 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         `{"lon": lon[None], "lat": lat[None]}` for 2D arrays and values over time. Or an array of the shape (..., N), whose last
         axis has the coordinates of each sample, as of VTK's structured grids. float32 and float64 in C order (with
         `time_axis=-1` in Fortran order) are read in place; coordinates of a sample side by side in memory take less time. For
-        several contours: a `tegl.CurvedGrid`. Default: the image's own, from `tegl.read`, and
-        the longitude and latitude in two dimensions of an xarray. Longitudes (by `axis_units`, degrees_east) are continued
+        several contours: a `tegl.CurvedGrid`. Samples without a coordinate, by the mask of a masked array, are missing. Default: the image's own, from `tegl.read`, and
+        the longitude and latitude in two dimensions of an xarray, unless `spacing`, `origin`, `affine`, or `coords` for the
+        axes of both are given in their place. Longitudes (by `axis_units`, degrees_east) are continued
         across 180 degrees, in a copy if they must be. See docs/other-tilings.md.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
@@ -135,14 +138,19 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         array, level = _labels.mask_of(array, label), 0.5
     if any(given is not None for given in (curved, spacing, origin, affine)):
         array = _arguments.without_longitude_and_latitude(array)
+    elif coords is not None:
+        coords = _arguments.listed_coords(coords)
+        array = _arguments.without_replaced(array, coords)
     prepared = _prepared_on(lattice, array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
-                            axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True)
+                            axis_names=axis_names, axis_units=axis_units, time_axis=time_axis,
+                            hidden=None if curved is None else _curved.masked_samples(curved), allow_curved=True)
     if level is None and positions != "relaxed":
         raise TypeError("level is missing; expected a number, such as tegl.contour(array, 0.5)")
     if level is None:
         level = _labels.middle_of(prepared.image.array)
-    if curved is None:
-        curved = _arguments.own_curved(array) or None
+    instead = ""
+    if curved is None and (curved := _arguments.own_curved(array) or None) is not None:
+        instead = f", or {_arguments.without_curved(array)} in place of the image"
     lattice = _lattice_of(array, lattice)
     is_double = _arguments.is_double(dtype, prepared)
     values = _arguments.position_values(positions, positions_image, prepared)
@@ -157,10 +165,10 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     periodic = _periods.given_or_none(periodic)
-    of_samples = [] if curved is None else _curved.coordinates_of(curved, prepared)
+    of_samples, no_place = ([], "") if curved is None else _curved.coordinates_of(curved, prepared)
     if curved is not None:
-        _refuse_other_coordinates([one[0] for one in of_samples], prepared, spacing, origin, coords, affine)
-    with prepared.terms():
+        _refuse_other_coordinates([one[0] for one in of_samples], prepared, spacing, origin, coords, affine, instead)
+    with _curved.naming(no_place), prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic),
                                           ("samples" if of_cells else "positions",
                                            None if positions == "linear" and not of_cells else positions),
@@ -607,15 +615,16 @@ def _cell_faces(array, prepared, other_coordinates: tuple) -> list[list[float]]:
     return faces[::-1] if prepared.is_reversed else faces
 
 
-def _refuse_other_coordinates(curved: list[int], prepared, spacing, origin, coords, affine) -> None:
-    """An error for coordinates of axes of a curved grid (numbers of the library) that would not be used."""
+def _refuse_other_coordinates(curved: list[int], prepared, spacing, origin, coords, affine, instead: str) -> None:
+    """An error for coordinates of axes of a curved grid (numbers of the library) that would not be used. `instead`: what else
+    is expected."""
     for name, given in (("spacing", spacing), ("origin", origin), ("affine", affine)):
         if given is not None:
             raise ValueError(f"{name} with a curved grid, whose samples have coordinates of their own; expected coords, with "
-                             "None for each curved axis")
+                             f"None for each curved axis{instead}")
     for axis, given in enumerate(coords or []):
         if given is not None and (prepared.ndim - 1 - axis if prepared.is_reversed else axis) in curved:
-            raise ValueError(f"coords[{axis}] with a curved grid along this axis; expected None for it")
+            raise ValueError(f"coords[{axis}] with a curved grid along this axis; expected None for it{instead}")
 
 
 def _path(path) -> str:

@@ -9,7 +9,8 @@ from . import _tegl
 
 INDEX_SUFFIX = "_index"  #: of the dimensions of an xarray with the coordinates of a curved grid
 TIME_NAMES = ("t", "time")
-_NORTH = ("degrees_north", "degree_north", "degree_N", "degrees_N", "degreeN", "degreesN")
+#: units of latitudes
+NORTH = ("degrees_north", "degree_north", "degree_N", "degrees_N", "degreeN", "degreesN")
 
 
 def is_xarray(data: object) -> bool:
@@ -35,7 +36,7 @@ def _longitude_and_latitude(data) -> dict[int, object]:
         return [name for name, one in data.coords.items() if one.ndim >= 2 and is_unit(str(one.attrs.get("units", "")))]
 
     for lon in of_unit(_tegl.is_longitude_unit):
-        for lat in of_unit(_NORTH.__contains__):
+        for lat in of_unit(NORTH.__contains__):
             dims = data.coords[lon].dims
             free = [axis for axis, dim in enumerate(data.dims)
                     if dim in dims and dim not in data.coords and str(dim).lower() not in TIME_NAMES]
@@ -47,6 +48,18 @@ def _longitude_and_latitude(data) -> dict[int, object]:
 def without_longitude_and_latitude(data):
     """An xarray without its coordinates of a curved grid, if tegl.read has not made it."""
     return data.drop_vars(list(_longitude_and_latitude(data).values())) if is_xarray(data) else data
+
+
+def without_replaced(data, coords: list):
+    """An xarray without its coordinates of a curved grid, if `coords` has others for both of their axes."""
+    curved = _longitude_and_latitude(data) if is_xarray(data) and len(coords) == data.ndim else {}
+    given = [axis for axis in curved if coords[axis] is not None]
+    if 0 < len(given) < len(curved):
+        others = [axis for axis in curved if axis not in given]
+        raise ValueError(f"coords[{given[0]}], but not coords[{others[0]}], of an xarray with the coordinates "
+                         f"{' and '.join(map(repr, curved.values()))} of a curved grid along both axes; expected both, in "
+                         "place of these, or None for both")
+    return without_longitude_and_latitude(data) if given else data
 
 
 def own_curved(data) -> dict[int, np.ndarray]:

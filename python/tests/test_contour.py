@@ -365,6 +365,22 @@ def test_periods_are_positive_and_finite(period):
             function(values, 0.5, periodic={0: period})
 
 
+def test_steps_of_half_a_period_and_more_are_errors():
+    angle, y = 2 * np.pi * np.arange(36) / 36, np.arange(20.0)
+    tube = np.broadcast_to(8 - np.hypot(y[:, None] - 9.5, y - 9.5)[..., None], (20, 20, 36))
+
+    def contour(period, of=tegl.contour, **arguments):
+        return of(tube, 0.0, coords=[y, y, angle], periodic={2: period}, **arguments)
+
+    around = contour(2 * np.pi, dtype=float)
+    assert around.measure().size == pytest.approx(2 * np.pi * around.slice(6.25, axis=2).measure().size)
+    for of in (tegl.contour, tegl.count, tegl.contour_facets):
+        with pytest.raises(ValueError, match="is 360, and the step across the seam, from 6.1.* to 360, is 353.*, such as 6.28319"):
+            contour(360, of)
+    with pytest.raises(ValueError, match="is 360, and the step across the seam"):
+        contour(360, division="kuhn")
+
+
 def test_longitudes_have_a_period_of_360():
     def contour(lon, periodic, of=tegl.contour, unit="degrees_east"):
         values = np.cos(np.radians(lon - 3)) + np.zeros((5, 1))
@@ -374,7 +390,7 @@ def test_longitudes_have_a_period_of_360():
         for periodic in ("lon", "longitude", 1, ["lon"]):
             assert contour(lon, periodic).periods.tolist() == [[0, 360]]
         assert contour(lon, "lon", tegl.count) == contour(lon, {"lon": 360}, tegl.count)
-        assert contour(lon, {"lon": 500.0}).periods.tolist() == [[0, 500]]
+        assert contour(lon, {"lon": 400.0}).periods.tolist() == [[0, 400]]
     assert contour(np.arange(0, 350, 10.0), "lon", unit="").periods.tolist() == [[0, 350]]
     for of in (tegl.contour, tegl.count):
         with pytest.raises(ValueError, match=r"the period of axis 1 \(lon\), of longitudes, is 360, and is not more than 360, the span"):
@@ -448,6 +464,41 @@ def test_longitudes_that_span_360_degrees_are_found():
     assert np.array_equal(wrapped.simplices, named.simplices) and len(wrapped.periods) == 1
     with pytest.raises(TypeError, match="'all', 'auto', 'none', or a dict"):
         tegl.contour(spot, 0.0, periodic=1.5)
+
+
+def test_cuts_across_periods_by_place_or_normal():
+    turn = 2 * np.pi * np.arange(24) / 24
+    z, y, x = np.meshgrid(turn, turn, turn, indexing="ij")
+    values = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x) + 0.2 * np.cos(x)
+
+    def contour(shear, periodic="all"):
+        affine = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [shear, 0, 1, 0]]) / 24
+        return tegl.contour(values, 0.01, periodic=periodic, dtype=float, affine=affine)
+
+    straight = contour(0.0)
+    for axis, normal in enumerate(np.eye(3)):
+        at = straight.slice(0.97, axis=axis)
+        for factor, place in ((1, 0.97), (2, 0.97), (1, 3.97), (0.5, -0.03)):
+            cut = straight.slice(normal=factor * normal, offset=factor * place)
+            assert cut.check().is_closed and len(cut.vertices) == len(at.vertices)
+            np.testing.assert_allclose(cut.vertices, at.vertices, atol=1e-9)
+    # lattice planes
+    for normal in ([1, 1, 0], [1, 1, 1], [1, -2, 0]):
+        assert straight.slice(normal=normal, offset=7.3).check().is_closed
+    with pytest.raises(ValueError, match="across one of its periods"):
+        straight.slice(normal=[1, 2 ** 0.5, 0], offset=0.5)
+    with pytest.raises(ValueError, match="expected an offset between"):
+        straight.slice(normal=[1, 2 ** 0.5, 0], offset=7.5)
+    # rounding of the affine is none of the cell
+    for shear in (1e-8, 0.3):
+        oblique = contour(shear)
+        for axis in range(3):
+            for place in (0.2, 1.2, -4.8):
+                assert oblique.slice(place, axis=axis).check().is_closed
+    with pytest.raises(ValueError, match="between"):
+        contour(0.0, periodic=0).slice(1.5, axis=2)
+    for place in (0.2, 1.2, -0.8, 5.2):
+        assert straight.measure(at=place).size[0] == pytest.approx(straight.measure(at=0.2).size[0])
 
 
 def test_periodic_axes_by_name_number_and_period():

@@ -50,12 +50,12 @@ def test_coordinates_are_read_in_place():
         prepared = _arguments.prepare(values, time_axis=time_axis)
         for dtype in (np.float32, np.float64):
             array = np.array(ordered, dtype=dtype)  # strides stay
-            found = _curved.coordinates_of(array, prepared)
+            found, _ = _curved.coordinates_of(array, prepared)
             assert all(np.shares_memory(one[2], array) for one in found), (time_axis, dtype)
             pitch = array.strides[2 if time_axis == 0 else 0] // array.itemsize
             assert [one[3] for one in found] == [pitch] * 3
-        assert not any(np.shares_memory(one[2], ordered) for one in _curved.coordinates_of(ordered[::-1], prepared))
-    assert {one[2].dtype for one in _curved.coordinates_of(points.astype(int), _arguments.prepare(values))} == {np.dtype("f8")}
+        assert not any(np.shares_memory(one[2], ordered) for one in _curved.coordinates_of(ordered[::-1], prepared)[0])
+    assert {one[2].dtype for one in _curved.coordinates_of(points.astype(int), _arguments.prepare(values))[0]} == {np.dtype("f8")}
 
 
 def test_curved_grids_are_read_in_place_in_both_orders_of_samples():
@@ -67,7 +67,7 @@ def test_curved_grids_are_read_in_place_in_both_orders_of_samples():
         assert list(grid.coordinates) == (list(range(3)) if given is points else list(given))
         for time_axis in (0, -1):
             prepared = _arguments.prepare(values, time_axis=time_axis)
-            first, second = (_curved.coordinates_of(grid, prepared) for _ in range(2))
+            first, second = (_curved.coordinates_of(grid, prepared)[0] for _ in range(2))
             for (axis, _, array, pitch, _), again in zip(first, second):
                 assert pitch == 4 and array.dtype == np.float32 and not array.flags.writeable
                 assert np.shares_memory(array, again[2])
@@ -126,6 +126,65 @@ def test_one_array_may_be_the_coordinates_along_two_axes():
     expected = tegl.contour(values, 0.5, curved={axis: one.copy() for axis, one in curved.items()}, dtype=np.float64)
     assert len(expected.simplices) > 10
     assert same_contours(tegl.contour(values, 0.5, curved=curved, dtype=np.float64), expected)
+
+
+@pytest.mark.filterwarnings("ignore:the curved grid is folded")  # across the seam
+@pytest.mark.parametrize("fill", [9.96921e36, -1e20, 5.0])
+def test_samples_with_masked_coordinates_are_missing(fill):
+    values, points = curved_image(3, np.float32)
+    mask = np.zeros(values.shape, dtype=bool)
+    mask[3:5, 2:4, :3] = True
+    of_points = np.zeros(points.shape, dtype=bool)
+    of_points[mask, 1] = True
+    stored = np.where(of_points, np.float32(fill), points)
+    masked = np.ma.masked_array(stored, of_points)
+    arrays = {axis: masked[..., axis] for axis in range(3)}
+    expected_points = np.where(of_points, np.float32(np.nan), points)
+    for time_axis in (0, -1):
+        for numbers in (values, (values * 200).astype(np.uint8)):
+            level = 0.5 if numbers is values else 100.5
+            given = {"time_axis": time_axis, "dtype": np.float64}
+            expected = tegl.contour(np.where(mask, np.nan, numbers), level, curved=expected_points, **given)
+            whole = tegl.contour(numbers, level, curved=points, **given)
+            assert 50 < len(expected.simplices) < len(whole.simplices)
+            for curved in (masked, arrays, tegl.CurvedGrid(masked), tegl.CurvedGrid(arrays)):
+                assert same_contours(tegl.contour(numbers, level, curved=curved, **given), expected)
+            # beside masked values, and with other options
+            own = np.ma.masked_array(numbers, np.roll(mask, 3, axis=0))
+            assert same_contours(tegl.contour(own, level, curved=masked, **given),
+                                 tegl.contour(np.where(mask | own.mask, np.nan, numbers), level, curved=expected_points, **given))
+            assert same_contours(tegl.contour(numbers, level, curved=arrays, periodic=2, **given),
+                                 tegl.contour(np.where(mask, np.nan, numbers), level, curved=expected_points, periodic=2, **given))
+    # a mask of fewer dimensions hides samples along the others
+    flat = np.ma.masked_array(points[:1, :, :, 1], mask[3:4])
+    assert same_contours(tegl.contour(values, 0.5, curved={1: flat}),
+                         tegl.contour(np.where(mask[3:4], np.nan, values), 0.5, curved={1: flat.filled(np.nan)}))
+    assert np.isnan(tegl.CurvedGrid(masked).coordinates[1][mask]).all()
+
+
+@pytest.mark.parametrize("fill, axis, unit, expected", [
+    (9.96921e36, 0, "", "at most 1e19"), (-1e20, 1, "m", "at most 1e19"), (np.inf, 2, "m", "at most 1e19"),
+    (1e20, 2, "degrees_east", "-720 to 720"), (-9999, 1, "degrees_north", "-90 to 90")])
+def test_numbers_that_cannot_be_places_are_errors_where_they_are_needed(fill, axis, unit, expected):
+    values, points = curved_image(3, np.float32)
+    units = tuple(unit if one == axis else "" for one in range(3))
+    hidden = values.copy()
+    hidden[3, 2:4, 1] = np.nan
+    points[3, 2:4, 1, axis] = np.nan
+    right = tegl.contour(hidden, 0.5, curved=points, axis_units=units)
+    points[3, 2:4, 1, axis] = fill
+    for time_axis in (0, -1):
+        for curved in (points, {one: points[..., one] for one in range(3)}, tegl.CurvedGrid(points)):
+            for _ in range(2):
+                with pytest.raises(ValueError) as raised:
+                    tegl.contour(values, 0.5, curved=curved, axis_units=units, time_axis=time_axis)
+                text = str(raised.value)
+                assert "which has unknown coordinates; expected missing values there. curved" in text
+                assert text.endswith(f"curved[{axis}][3, 2, 1] is {np.float32(fill):g}, which cannot be a place (expected {expected}); "
+                                     "the mask of a masked array, as of numpy.ma.masked_equal, hides such samples")
+            contour = tegl.contour(hidden, 0.5, curved=curved, axis_units=units, time_axis=time_axis)
+            assert len(contour.simplices) == len(right.simplices) > 50
+            assert time_axis == -1 or same_contours(contour, right)
 
 
 def test_bad_curved_points_are_errors():

@@ -8,7 +8,9 @@ import importlib.util
 import json
 import os
 import pathlib
+import runpy
 import subprocess
+import sys
 import threading
 
 import numpy as np
@@ -310,6 +312,11 @@ def test_xarrays_keep_the_coordinates_of_a_curved_grid():
                 tegl.contour(values.transpose(0, 2, 1)[:, :, :12], 0.0, axis_names=("time", "y", "x"),
                              axis_units=("s", "m", "m"), curved={2: curved[1].transpose(0, 2, 1)[:, :, :12],
                                                                  1: curved[2].transpose(0, 2, 1)[:, :, :12]}))
+    with pytest.raises(ValueError, match=r"coords\[1\] with a curved grid along this axis; expected None for it, or "
+                                         r"drop_vars\(\['x', 'y'\]\) in place of the image"):
+        tegl.contour(data, 0.0, coords=[None, range(20), range(10)])
+    with pytest.raises(ValueError, match="spacing with a curved grid.*None for each curved axis, or its `array` in place of the image"):
+        tegl.contour(image, 0.0, spacing=2.0)
     with pytest.raises(ValueError, match="an image with a curved grid"):
         tegl.slice(data, 0.0, at=0.5)
 
@@ -343,6 +350,20 @@ def test_xarrays_with_longitude_and_latitude_in_two_dimensions_are_curved():
     indices = tegl.contour(data.drop_vars(["TLAT", "TLONG"]), 0.0)
     assert_same(indices, tegl.contour(values, 0.0))
     assert_same(tegl.contour(data, 0.0, spacing=1.0), indices)
+    # coordinates of both dimensions in place of longitude and latitude
+    i, j = np.arange(36) * 2.0, np.arange(20) * 1.0
+    for coords in ([None, j, i], (range(3), list(j), i)):
+        given = tegl.contour(data, 0.0, coords=coords)
+        assert given.axis_names == ("time", "j", "i")
+        assert_same(given, tegl.contour(straight, 0.0))
+    assert_same(tegl.contour(data, 0.0, coords=[np.arange(3.0), None, None]), contour)
+    with pytest.raises(ValueError, match=r"coords\[2\], but not coords\[1\], of an xarray with the coordinates 'TLAT' and 'TLONG' "
+                                         "of a curved grid along both axes; expected both, in place of these, or None for both"):
+        tegl.contour(data, 0.0, coords=[None, None, i])
+    with pytest.raises(ValueError, match=r"coords\[1\] with a curved grid along this axis; expected None for it$"):
+        tegl.contour(data, 0.0, coords=[None, j, i], curved=curved)
+    with pytest.raises(ValueError, match="coords has 2 entries; expected one for each of 3 axes"):
+        tegl.contour(data, 0.0, coords=[j, i])
     assert tegl.contour(data[:, 14], 2.5).axis_names == ("time", "i")  # no longer in two dimensions
     with pytest.raises(ValueError, match=r"a curved grid.*expected drop_vars\(\['TLAT', 'TLONG'\]\)"):
         tegl.slice(data, 0.0, at=0.5)
@@ -549,44 +570,60 @@ def test_what_brings_a_library_down_is_a_value_error(name):
         (tegl.load if name.endswith(".vtkhdf") else tegl.read)(path, separate_process=True)
 
 
-def crystal(name):
-    path = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]).parent / "shared/data/lattice" / name
-    if not path.exists():
+def crystal(monkeypatch, name=None):
+    """The variables of examples/python/crystal.py, run on a real file or else on its model. It checks that contours are
+    closed, and that data from another start have the same ones."""
+    script = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]) / "examples/python/crystal.py"
+    path = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]).parent / f"shared/data/lattice/{name}"
+    if name and not path.exists():
         pytest.skip(f"no {path}")
-    return (gzip.open(path, "rt") if name.endswith(".gz") else open(path, encoding="ascii")).read()
+    monkeypatch.setattr(sys, "argv", [str(script)] + ([str(path)] if name else []))
+    return runpy.run_path(str(script))
 
 
-def test_a_density_in_a_crystal_is_closed_on_the_cubic_grid_and_on_fcc():
-    lines = crystal("CHGCAR_Si_fcc.vasp").splitlines()
-    vectors, n = np.array([line.split() for line in lines[2:5]], dtype=float), 28
-    density = np.array(" ".join(lines[11:]).split()[:n**3], dtype=float).reshape(n, n, n)
-    affine = np.column_stack([vectors[::-1].T / n, np.zeros(3)])
+def test_the_head_of_a_density_in_a_crystal_has_several_forms(monkeypatch):
+    of = crystal(monkeypatch)
+    text, volume = of["model_chgcar"](12), 3.9**3 / 4
+    values, vectors = of["read_chgcar"](text)
+    assert np.linalg.det(vectors) == pytest.approx(volume) and values.mean() * volume == pytest.approx(4)
+    old = text.replace("Si\n", "")  # without the symbols of the atoms
+    more = text + "augmentation occupancies 1 2\n 0.1 0.2\n\n 12 12 12\n 1 2 3\n"
+    for same in (old, more, text.replace("\n1.0\n", f"\n-{volume}\n")):
+        for found, expected in zip(of["read_chgcar"](same), (values, vectors)):
+            np.testing.assert_allclose(found, expected)
+    larger = of["read_chgcar"](text.replace("\n1.0\n", "\n2.0\n"))
+    np.testing.assert_allclose(larger[1], 2 * vectors)
+    np.testing.assert_allclose(larger[0], values / 8)
+
+
+def test_a_density_in_a_crystal_is_closed_on_the_cubic_grid_and_on_fcc(monkeypatch, capsys):
+    of = crystal(monkeypatch, "CHGCAR_Si_fcc.vasp")
+    assert "28 x 28 x 28 samples, a cell of the volume 14.83" in capsys.readouterr().out
+    density, vectors, n = of["values"], of["vectors"], 28
+    assert density.mean() * of["volume"] == pytest.approx(4, abs=1e-4)  # valence electrons of an atom
     # The samples along the primitive vectors are a lattice fcc, whose axes are (1, 1, 0), (1, -1, 0) and (0, 0, 1). A box of
     # 56 layers repeats itself, and has two primitive cells.
     k, y, x = np.meshgrid(np.arange(2 * n), np.arange(n), np.arange(n), indexing="ij")
     a, b, c = x + (k % 2 - k) // 2, (k - k % 2) // 2 - y, y + (k % 2 + k) // 2
-    layers, layer = density[c % n, b % n, a % n], vectors[0, 0] / n
+    layers, layer = density[a % n, b % n, c % n], vectors[0, 0] / n
     for share, euler in ((0.2, -8), (0.5, -8), (0.7, 4), (0.9, 4)):
         level = np.quantile(density, share)
-        cell = tegl.contour(density, level, periodic="all", affine=affine, dtype=float)
+        cell = of["surface_of"](density, level)
         box = tegl.contour(layers, level, periodic="all", lattice="fcc", spacing=[layer, 2**0.5 * layer, 2**0.5 * layer],
                            dtype=float)
         for contour, count in ((cell, 1), (box, 2)):
             report = contour.check()
             assert report.is_closed and report.is_manifold and report.euler == count * euler
         assert box.measure().size == pytest.approx(2 * cell.measure().size, rel=0.01)
+        content = cell.measure().content  # of as large a share of the cell as of the samples, unless it winds round
+        assert (content is None) == (euler == -8)
+        assert content is None or content == pytest.approx((1 - share) * of["volume"], rel=0.12)
 
 
-def test_fermi_surfaces_of_a_crystal_are_closed():
-    words = crystal("RhBulkFcc.bxsf.gz").split("BANDGRID_3D_BANDS")[1].split()
-    bands, n = int(words[0]), int(words[1])
-    affine = np.column_stack([np.array(words[7:16], dtype=float).reshape(3, 3).T / (n - 1), np.zeros(3)])
-    parts = []
-    for band in range(bands):
-        first = 16 + band * (n**3 + 2) + 2  # after "BAND:" and its number
-        energies = np.array(words[first:first + n**3], dtype=float).reshape(n, n, n)
-        assert np.array_equal(energies[0], energies[-1])  # the first samples are repeated at the end
-        report = tegl.contour(energies[:-1, :-1, :-1], 0.83511, periodic="all", affine=affine).check()
-        assert report.is_closed and report.is_manifold
-        parts.append((report.components, report.euler))
-    assert parts == [(3, 6), (7, 14), (1, 2)]
+def test_fermi_surfaces_of_a_crystal_are_closed(monkeypatch):
+    of = crystal(monkeypatch, "RhBulkFcc.bxsf.gz")
+    text = gzip.open(of["path"], "rt").read().split("BAND:  6")[1].split()
+    assert np.array(text[:32**3], dtype=float).reshape([32] * 3)[:-1, :-1, :-1].tolist() == of["bands"][0].tolist()
+    reports = [of["surface_of"](*field).check() for field in of["fields"]]
+    assert all(report.is_closed and report.is_manifold for report in reports)
+    assert [(report.components, report.euler) for report in reports] == [(3, 6), (7, 14), (1, 2)]

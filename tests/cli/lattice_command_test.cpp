@@ -3,11 +3,14 @@
 // --lattice, and files that record the lattice of their samples.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstddef>
 #include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "tegl/io.hpp"
 #include "tegl_program.hpp"
 
 namespace tegl::test {
@@ -107,6 +110,64 @@ TEST_F(LatticeCommand, TheLatticeIsAPropertyOfTheImage) {
     EXPECT_EQ(facets({}), facets({"--lattice", "fcc"}));
     EXPECT_LT(facets({}), facets({"--periodic", "x,y"}));
   }
+}
+
+TEST_F(LatticeCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
+  const std::string file = path("gyroid.nrrd"), output = path("gyroid.vtkhdf");
+  const auto sample = [&](const char* lattice, const char* sizes, const char* field, const std::string& to) {
+    (void)run_json({"sample", field, "--lattice", lattice, "--size", sizes, "--range", "0:1", "-o", to});
+  };
+  const auto contour = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = {"contour", file, "-o", output};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_json(all);
+  };
+  // a wave along x; the file says that it is on the lattice
+  sample("fcc", "13,12,14", "sin(6.5*x)+0.01*y", file);
+  const nlohmann::json open = contour({"--iso", "0.2"});
+  EXPECT_GT(open["boundary_simplices"], 0);
+  const nlohmann::json closed = contour({"--iso", "0.2", "--close"});
+  EXPECT_EQ(closed["boundary_simplices"], 0);
+  EXPECT_GT(closed["simplices"], open["simplices"]);
+  const nlohmann::json around = contour({"--iso", "0.2", "--close", "--periodic", "x,y", "--normals"});
+  EXPECT_EQ(around["boundary_simplices"], 0);
+  EXPECT_EQ(run_json({"contour", file, "--iso", "0.2", "-o", output, "--periodic", "all"})["boundary_simplices"], 0);
+  // attributes: the image itself, and another one on the same lattice
+  sample("fcc", "13,12,14", "3*sin(6.5*x)+0.03*y+1", path("other.nrrd"));
+  for (const char* const more : {"--close", "--merge", "--periodic=x"}) {
+    const std::string with = path("with.vtkhdf");
+    (void)run_json({"contour", file, "--iso", "0.2", "-o", with, "--attribute", path("other.nrrd"), more});
+    const Mesh mesh = read_mesh(with);
+    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+    EXPECT_EQ(mesh.vertex_attributes[0].name, "other");
+    std::size_t at_level = 0;
+    for (const double value : mesh.vertex_attributes[0].values) at_level += std::abs(value - 1.6) < 1e-5 ? 1 : 0;
+    EXPECT_GE(at_level, open["vertices"].get<std::size_t>() / 2) << more;
+  }
+  // --pick on the lattice that the file names
+  const nlohmann::json picked = contour({"--iso", "0.2", "--periodic", "x,y", "--pick", "1.3,0.5,0.5"});
+  EXPECT_EQ(picked["components"], 1);
+  // the period is 13/12: from x = 0.217 to the sheet at 0.031, in steps of 1/12
+  EXPECT_NEAR(picked["pick"]["distance"].get<double>(), 12 * (1.3 - 13.0 / 12 - std::asin(0.2) / 6.5), 0.05);
+  sample("fcc", "13,12,12", "x", path("shorter.nrrd"));
+  const auto refused = [&](std::vector<std::string> arguments, const char* message) {
+    const RunResult run = run_tegl(arguments);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  };
+  const std::string ply = path("a.ply");
+  refused({"contour", file, "--iso", "0.2", "-o", ply, "--periodic", "x", "--lattice", "cubic", "--pick", "0,0,0"},
+          "--periodic x with --pick");
+  refused({"contour", file, "--iso", "0.2", "-o", ply, "--attribute", path("shorter.nrrd")},
+          "expected the same lattice, numbers of samples and coordinates");
+  (void)run_json({"sample", "ball", "--size", "6", "-o", path("ball.nii")});
+  refused({"contour", path("ball.nii"), "--iso", "0", "-o", ply, "--attribute", file},
+          "an image on the lattice fcc, and the contour");
+  refused({"slice", file, "--iso", "0.2", "--at", "z=0.5", "-o", ply, "--attribute", file},
+          "--attribute on the lattice");
+  sample("bcc", "6,6,7", "x", path("odd.nrrd"));
+  refused({"contour", path("odd.nrrd"), "--iso", "0.2", "-o", ply, "--periodic", "z"},
+          "has 7 layers; expected an even");
 }
 
 }  // namespace

@@ -100,6 +100,9 @@ TEST_F(PeriodicCommand, WrongAxesAndOtherOptionsAreRefused) {
   expect_refused({"--periodic", "x=20", "--stream", "-o", output}, "expected more than 29");
   expect_refused({"--periodic", "x", "--facets", "--unroll", "-o", output}, "--unroll with --facets");
   expect_refused({"--periodic", "x=20", "--facets", "-o", output}, "expected more than 29");
+  for (const char* const option : {"--no-check", "--stream", "--facets"})  // a period in another unit
+    expect_refused({"--periodic", "x=100", option, "-o", output},
+                   "the period of axis 0 (x) is 100, and the step across the seam, from 29 to 100, is 71; expected");
   expect_refused({"--periodic", "x", "--triangulation", "fan", "-o", output}, "--periodic x with a triangulation");
   expect_refused({"--periodic", "x", "--pick", "1,2,3", "-o", output}, "--periodic x with --pick");
   expect_refused({"--unroll", "-o", output}, "--unroll without --periodic");
@@ -223,10 +226,12 @@ TEST_F(PeriodicCommand, CutsAcrossAPeriodAreModuloThePeriod) {
     arguments.insert(arguments.end(), {"--at", "z=1"});
     EXPECT_THAT(run_tegl(arguments).err, Not(HasSubstr("unrolled")));
     // slices, also between the last sample and the end of the period
-    for (const char* const place : {"z=29.5", "z=-0.5", "z=59.5"}) {
+    for (const auto& [option, place] :
+         {std::pair("--at", "z=29.5"), std::pair("--at", "z=-0.5"), std::pair("--at", "z=59.5"),
+          std::pair("--plane", "0,0,1=59.5"), std::pair("--plane", "0,0,-2=1")}) {
       arguments = {"slice"};
       arguments.insert(arguments.end(), input.begin(), input.end());
-      arguments.insert(arguments.end(), {"--at", place, "-o", path("cut.vtkhdf")});
+      arguments.insert(arguments.end(), {option, place, "-o", path("cut.vtkhdf")});
       const RunResult run = run_tegl(arguments);
       EXPECT_EQ(run.exit, 0) << run.err;
       EXPECT_THAT(run.err, Not(HasSubstr("unrolled")));
@@ -237,6 +242,52 @@ TEST_F(PeriodicCommand, CutsAcrossAPeriodAreModuloThePeriod) {
   const RunResult run = run_tegl({"slice", saved, "--at", "y=-1", "-o", path("cut.vtkhdf")});
   EXPECT_NE(run.exit, 0);
   EXPECT_THAT(run.err, HasSubstr("lies outside of the saved contour"));
+}
+
+TEST_F(PeriodicCommand, PlacesOnAShearedAxisAndLatticePlanesCutTheRepetition) {
+  OwnedImage<double, 3> image;
+  image.grid.linear[0][2] = 0.3;
+  for (Axis& axis : image.grid.axes) axis = Axis::uniform(24, 0.0, 1.0 / 24);
+  const auto field = [](double x, double y, double z) {
+    const double turn = 2 * std::numbers::pi;
+    return std::sin(turn * (x - 0.3 * z)) + 0.7 * std::cos(turn * y) + 0.8 * std::sin(turn * z + 0.5);
+  };
+  for (int k = 0; k < 24; ++k)
+    for (int j = 0; j < 24; ++j)
+      for (int i = 0; i < 24; ++i) image.values.push_back(field(i / 24.0 + 0.3 * k / 24.0, j / 24.0, k / 24.0));
+  const std::string file = path("sheared.nrrd"), saved = path("sheared.vtkhdf"), output = path("cut.vtkhdf");
+  write_image(image.view(), file);
+  (void)run_json({"contour", file, "--iso", "0.4", "--periodic", "all", "-o", saved});
+  for (const std::vector<std::string>& input :
+       {std::vector<std::string>{saved}, {file, "--iso", "0.4", "--periodic", "all"}}) {
+    const auto cut_by = [&](const std::string& option, const std::string& value) {
+      std::vector<std::string> arguments = {"slice"};
+      arguments.insert(arguments.end(), input.begin(), input.end());
+      arguments.insert(arguments.end(), {option, value, "-o", output});
+      const RunResult run = run_tegl(arguments);
+      EXPECT_EQ(run.exit, 0) << run.err;
+      EXPECT_THAT(run.err, Not(HasSubstr("unrolled")));
+      return to_contour<2>(read_mesh(output));
+    };
+    const double size = measure(cut_by("--at", "z=0.2")).size;
+    for (const double z : {0.2, 1.2, -0.8, 5.2})
+      for (const auto& [option, value] :
+           {std::pair("--at", "z=" + std::to_string(z)), std::pair("--plane", "0,0,2=" + std::to_string(2 * z))}) {
+        const auto cut = cut_by(option, value);
+        EXPECT_EQ(check(cut).boundary_simplices, 0u);
+        EXPECT_NEAR(measure(cut).size, size, 1e-5) << value;
+        for (const auto& x : cut.vertices) ASSERT_NEAR(field(x[0], x[1], z), 0.4, 0.02) << value;
+      }
+    // several periods cross a lattice plane, here y + z = 7.3
+    const auto plane = cut_by("--plane", "0,1,1=7.3");
+    EXPECT_EQ(check(plane).boundary_simplices, 0u);
+    EXPECT_EQ(plane.periods.size(), 2u);
+    std::vector<std::string> measured = {"measure"};
+    measured.insert(measured.end(), input.begin(), input.end());
+    measured.insert(measured.end(), {"--at", "z=0.2,1.2"});
+    const nlohmann::json cuts = run_json(measured)["cuts"];
+    EXPECT_NEAR(cuts[1]["size"].get<double>(), size, 1e-5);
+  }
 }
 
 TEST_F(PeriodicCommand, PlacesBesideThePeriodOfATurnedImageAreItsPlaces) {
@@ -380,63 +431,6 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   EXPECT_FALSE(read_mesh(output).normals.empty());
 }
 
-TEST_F(PeriodicCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
-  const std::string file = path("gyroid.nrrd"), output = path("gyroid.vtkhdf");
-  const auto sample = [&](const char* lattice, const char* sizes, const char* field, const std::string& to) {
-    (void)run_json({"sample", field, "--lattice", lattice, "--size", sizes, "--range", "0:1", "-o", to});
-  };
-  const auto contour = [&](std::vector<std::string> more) {
-    std::vector<std::string> all = {"contour", file, "-o", output};
-    all.insert(all.end(), more.begin(), more.end());
-    return run_json(all);
-  };
-  // a wave along x; the file says that it is on the lattice
-  sample("fcc", "13,12,14", "sin(6.5*x)+0.01*y", file);
-  const nlohmann::json open = contour({"--iso", "0.2"});
-  EXPECT_GT(open["boundary_simplices"], 0);
-  const nlohmann::json closed = contour({"--iso", "0.2", "--close"});
-  EXPECT_EQ(closed["boundary_simplices"], 0);
-  EXPECT_GT(closed["simplices"], open["simplices"]);
-  const nlohmann::json around = contour({"--iso", "0.2", "--close", "--periodic", "x,y", "--normals"});
-  EXPECT_EQ(around["boundary_simplices"], 0);
-  EXPECT_EQ(run_json({"contour", file, "--iso", "0.2", "-o", output, "--periodic", "all"})["boundary_simplices"], 0);
-  // attributes: the image itself, and another one on the same lattice
-  sample("fcc", "13,12,14", "3*sin(6.5*x)+0.03*y+1", path("other.nrrd"));
-  for (const char* const more : {"--close", "--merge", "--periodic=x"}) {
-    const std::string with = path("with.vtkhdf");
-    (void)run_json({"contour", file, "--iso", "0.2", "-o", with, "--attribute", path("other.nrrd"), more});
-    const Mesh mesh = read_mesh(with);
-    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
-    EXPECT_EQ(mesh.vertex_attributes[0].name, "other");
-    std::size_t at_level = 0;
-    for (const double value : mesh.vertex_attributes[0].values) at_level += std::abs(value - 1.6) < 1e-5 ? 1 : 0;
-    EXPECT_GE(at_level, open["vertices"].get<std::size_t>() / 2) << more;
-  }
-  // --pick on the lattice that the file names
-  const nlohmann::json picked = contour({"--iso", "0.2", "--periodic", "x,y", "--pick", "1.3,0.5,0.5"});
-  EXPECT_EQ(picked["components"], 1);
-  // the period is 13/12: from x = 0.217 to the sheet at 0.031, in steps of 1/12
-  EXPECT_NEAR(picked["pick"]["distance"].get<double>(), 12 * (1.3 - 13.0 / 12 - std::asin(0.2) / 6.5), 0.05);
-  sample("fcc", "13,12,12", "x", path("shorter.nrrd"));
-  const auto refused = [&](std::vector<std::string> arguments, const char* message) {
-    const RunResult run = run_tegl(arguments);
-    EXPECT_NE(run.exit, 0);
-    EXPECT_THAT(run.err, HasSubstr(message));
-  };
-  const std::string ply = path("a.ply");
-  refused({"contour", file, "--iso", "0.2", "-o", ply, "--periodic", "x", "--lattice", "cubic", "--pick", "0,0,0"},
-          "--periodic x with --pick");
-  refused({"contour", file, "--iso", "0.2", "-o", ply, "--attribute", path("shorter.nrrd")},
-          "expected the same lattice, numbers of samples and coordinates");
-  refused({"contour", file_, "--iso", "0", "-o", ply, "--attribute", file},
-          "an image on the lattice fcc, and the contour");
-  refused({"slice", file, "--iso", "0.2", "--at", "z=0.5", "-o", ply, "--attribute", file},
-          "--attribute on the lattice");
-  sample("bcc", "6,6,7", "x", path("odd.nrrd"));
-  refused({"contour", path("odd.nrrd"), "--iso", "0.2", "-o", ply, "--periodic", "z"},
-          "has 7 layers; expected an even");
-}
-
 TEST_F(PeriodicCommand, CurvedGridsMayBePeriodic) {
   // a global grid: longitudes and latitudes by two indices; a spot around 180 degrees east
   const std::string file = path("globe.nc");
@@ -512,8 +506,15 @@ TEST_F(PeriodicCommand, AxesOfFilesAreNamedByDimensionLetterOrUnit) {
   // a name counts more than a letter, and lon is no name without a unit of longitudes
   const std::string crossed = write_globe("y", "");
   EXPECT_EQ(components(crossed, "y"), 1);
-  EXPECT_EQ(components(crossed, "x"), 1);
+  // as of --at: an axis that is named by another letter has no other one
+  expect_refused_of(crossed, {"--periodic", "x", "-o", output},
+                    "--periodic x names no axis; expected one of y, yt_ocean, or all, auto or none");
   expect_refused_of(crossed, {"--periodic", "lon", "-o", output}, "--periodic lon names no axis; expected one of y, ");
+  const std::string beside = write_globe("z", "");
+  EXPECT_EQ(components(beside, "z"), 1);
+  expect_refused_of(beside, {"--periodic", "x", "-o", output},
+                    "--periodic x names no axis; expected one of z, yt_ocean, or y for yt_ocean, or all, auto or none");
+  expect_refused_of(beside, {"--periodic", "y,y", "-o", output}, "--periodic names the axis y twice");
 }
 
 TEST_F(PeriodicCommand, LongitudesAreFoundByTheirUnitAndSpan) {

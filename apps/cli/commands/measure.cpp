@@ -121,7 +121,7 @@ class MeasureCommand final : public ContourInputCommand {
       CutAxis axis = input.last_axis.value_or(extent);
       const bool is_wrapped = cuts_wrapped(contour.periods, Hyperplane<N>::across(N - 1, 0.0));
       if (is_wrapped && !contour.periods.empty()) {
-        axis = wrapped_axis(axis, N - 1, contour.periods);
+        axis = axis_with_periods(axis, N - 1, contour.periods);
         if (axis.period > 0.0) extent = axis;
       } else if (!is_wrapped) {
         remark(kUnrolledForCuts);
@@ -132,7 +132,7 @@ class MeasureCommand final : public ContourInputCommand {
           extent.first = std::min(extent.first, x[N - 1]);
           extent.last = std::max(extent.last, x[N - 1]);
         }
-        axis = wrapped_axis(input.last_axis.value_or(extent), N - 1, contour.periods);
+        axis = axis_with_periods(input.last_axis.value_or(extent), N - 1, contour.periods);
         found.cuts = measured_cuts(unrolled, input, cuts, axis, extent, bar);
         return found;
       }

@@ -48,7 +48,7 @@ constexpr const char* kSliceExamples =
     "'frame'.\n"
     "For an image, only the layers next to each cut are contoured; all of them with --plane, --periodic, --lattice,\n"
     "--division and --samples-are cells. A saved contour is cut directly, all cuts of one direction in one pass.\n"
-    "Places on a periodic axis are modulo its period.\n"
+    "Every place on a periodic axis has a cut. If all axes are periodic, so has every lattice plane.\n"
     "At a layer of the image, a saved 5D contour by --ambiguity low or high has other tetrahedra than the layer's\n"
     "contour, with the same topology: cut the image for the layer's own.";
 

@@ -93,7 +93,7 @@ OpenLayersResult Command::open() {
 }
 
 void Command::settle_curved(ImageInfo& info, CurvedGrids curved) const {
-  if (images_.index_grid() && info.format != "netCDF")
+  if (images_.index_grid() && info.format != "netCDF" && info.curved.empty())
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("--index-grid with {}, which is {}; expected it with a curved grid of a netCDF file",
                             worked_on_.front(), info.format));

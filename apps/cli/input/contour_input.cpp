@@ -89,13 +89,13 @@ CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved,
   CutSpace space = space_of(image);
   for (const CurvedAxis& one : curved) space.axes[static_cast<std::size_t>(one.axis)] = cut_axis_of(one);
   if (curved.empty() || periodic.empty()) return space;
-  const auto take_periods = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
+  const auto take_seams = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
     const std::vector<CurvedSeam<N>> seams = seams_of(owned.grid, curved, periodic);
-    std::vector<Vector<N>> vectors;
-    for (const CurvedSeam<N>& seam : seams) vectors.push_back(seam.vector);
-    for (int a = 0; a < N; ++a) (void)take_period<N>(space.axes[static_cast<std::size_t>(a)], vectors, a);
+    std::vector<Period<N>> periods;
+    for (const CurvedSeam<N>& seam : seams) periods.push_back({seam.vector, {}, 0.0});
+    take_periods(space, periods);
   };
-  std::visit([&](const auto& typed) { std::visit(take_periods, typed); }, image);
+  std::visit([&](const auto& typed) { std::visit(take_seams, typed); }, image);
   return space;
 }
 
@@ -126,13 +126,13 @@ CutSpace space_of_longer(const OwnedImage<T, N>& owned, const std::vector<std::s
     if (is_longer[a]) axis = with_repeated_sample(axis, periods[a]);
   }
   CutSpace space = space_of(grid);
-  std::vector<Vector<N>> vectors;
+  std::vector<Period<N>> of_world;
   for (std::size_t b = 0; b < N; ++b) {
     if (!is_longer[b]) continue;
-    Vector<N>& vector = vectors.emplace_back();
+    Vector<N>& vector = of_world.emplace_back().vector;
     for (std::size_t a = 0; a < N; ++a) vector[a] = grid.linear[a][b] * periods[b];
   }
-  for (int a = 0; a < N; ++a) (void)take_period<N>(space.axes[static_cast<std::size_t>(a)], vectors, a);
+  take_periods(space, of_world);
   return space;
 }
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "base/numbers.hpp"
@@ -146,12 +146,33 @@ void find_levels(std::vector<Cut>& cuts, const CutSpace& space) {
   }
 }
 
+/// Whether all hyperplanes with this normal cut a wrapped contour, whatever their offsets.
+bool has_all_offsets(const CutSpace& space, const std::vector<double>& normal) {
+  const auto has_all = [&]<int N>(std::integral_constant<int, N>) {
+    Vector<N> components;
+    std::copy_n(normal.begin(), N, components.begin());
+    return cut_period<N>(periods_of_numbers<N>(space.periods), components).has_value();
+  };
+  switch (space.periods.empty() ? 0 : space.axes.size()) {
+    case 3:
+      return has_all(std::integral_constant<int, 3>());
+    case 4:
+      return has_all(std::integral_constant<int, 4>());
+    case 5:
+      return has_all(std::integral_constant<int, 5>());
+    default:
+      return false;
+  }
+}
+
 template <int N>
-void unroll_axes(const std::vector<Period<N>>& periods, CutSpace& space) {
+void wrap_axes(const std::vector<double>& numbers, CutSpace& space) {
+  const std::vector<Period<N>> periods = periods_of_numbers<N>(numbers);
   for (int a = 0; a < N; ++a) {
     CutAxis& axis = space.axes[static_cast<std::size_t>(a)];
-    axis = wrapped_axis(std::move(axis), a, periods);
+    axis = axis_with_periods(std::move(axis), a, periods);
   }
+  space.periods = numbers;
 }
 
 std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::join(labels_of(space), ", ")); }
@@ -159,36 +180,25 @@ std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::jo
 }  // namespace
 
 template <int N>
-CutAxis wrapped_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
-  const auto at = static_cast<std::size_t>(a);
-  std::vector<Vector<N>> vectors;
-  double before = 0.0, after = 0.0;  // `unroll` moves simplices to the end of the period
-  for (const Period<N>& period : periods) {
-    vectors.push_back(period.vector);
-    before += std::min(0.0, period.vector[at]);
-    after += std::max(0.0, period.vector[at]);
-  }
-  const std::optional<std::size_t> number = take_period<N>(axis, vectors, a);
-  if (!number) {
-    axis.first += before;
-    axis.last += after;
+CutAxis axis_with_periods(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
+  if (const std::optional<CutPeriod<N>> cuts = take_period<N>(axis, periods, a)) {
+    axis.first = cuts->first;
+    axis.last = cuts->first + cuts->length;
     return axis;
   }
-  // the seam, if it is across the axis
-  const Period<N>& own = periods[*number];
-  for (std::size_t b = 0; b < N; ++b)
-    if (b != at && std::abs(own.dual[b]) > 1e-9 * std::abs(own.dual[at])) return axis;
-  const double start = own.start / own.dual[at];
-  std::tie(axis.first, axis.last) = std::minmax({start, start + own.vector[at]});
+  for (const Period<N>& period : periods) {  // `unroll` moves simplices to the end of the period
+    const double part = period.vector[static_cast<std::size_t>(a)];
+    (part < 0.0 ? axis.first : axis.last) += part;
+  }
   return axis;
 }
 
-template CutAxis wrapped_axis(CutAxis, int, const std::vector<Period<3>>&);
-template CutAxis wrapped_axis(CutAxis, int, const std::vector<Period<4>>&);
-template CutAxis wrapped_axis(CutAxis, int, const std::vector<Period<5>>&);
+template CutAxis axis_with_periods(CutAxis, int, const std::vector<Period<3>>&);
+template CutAxis axis_with_periods(CutAxis, int, const std::vector<Period<4>>&);
+template CutAxis axis_with_periods(CutAxis, int, const std::vector<Period<5>>&);
 
 double within_period(const CutAxis& axis, double place) {
-  if (!(axis.period > 0.0) || (place >= axis.first && place <= axis.last)) return place;
+  if (!(axis.period > 0.0) || axis.is_moved || (place >= axis.first && place <= axis.last)) return place;
   return place_in_period(place, axis.first, axis.period);
 }
 
@@ -283,9 +293,9 @@ CutSpace space_of(const Mesh& mesh) {
       axis.last = std::max(axis.last, mesh.coordinates[i]);
     }
   }
-  if (n == 3) unroll_axes(periods_of_numbers<3>(mesh.periods), space);
-  if (n == 4) unroll_axes(periods_of_numbers<4>(mesh.periods), space);
-  if (n == 5) unroll_axes(periods_of_numbers<5>(mesh.periods), space);
+  if (n == 3) wrap_axes<3>(mesh.periods, space);
+  if (n == 4) wrap_axes<4>(mesh.periods, space);
+  if (n == 5) wrap_axes<5>(mesh.periods, space);
   return space;
 }
 
@@ -365,7 +375,7 @@ std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allo
   for (Cut& cut : cuts) {
     const CutAxis axis = range_of(cut, space);
     const double level = cut.level.value_or(cut.value);
-    cut.is_outside = !(level >= axis.first && level <= axis.last);
+    cut.is_outside = !(level >= axis.first && level <= axis.last) && !has_all_offsets(space, cut.normal);
     if (cut.is_outside && !allow_empty) throw outside_error(cut, axis, space.of);
   }
   return cuts;

@@ -3,7 +3,6 @@
 // Values of --at and --plane, the space that is cut, and the output file of each cut.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -16,7 +15,9 @@
 #include "tegl/contour.hpp"
 #include "tegl/io/images.hpp"
 #include "tegl/io/meshes.hpp"
+#include "tegl/periodic.hpp"
 #include "tegl/slice.hpp"
+#include "tegl/vector.hpp"
 
 namespace tegl::cli {
 
@@ -49,26 +50,31 @@ struct CutAxis {
   std::string name;
   double first = 0;
   double last = 0;
-  double period = 0;  ///< if above 0: places that differ by it are the same, and first to last is one period
+  double period = 0;      ///< if above 0: every place has a cut, and first to last is one period
+  bool is_moved = false;  ///< whether cuts a period apart are not equal, but moved within their hyperplanes
 };
 
-/// Makes an axis periodic, from its first place on, if one of the periods is along it (`period_along`). `vectors`: of
-/// the periods. Returns the number of that one.
+/// Makes an axis periodic, from its first place on, if every place across it has a cut (`cut_period`). Returns how cuts
+/// repeat then. N is 2 to 5; axes of 2D contours are not cut.
 template <int N>
-std::optional<std::size_t> take_period(CutAxis& axis, std::span<const Vector<N>> vectors, int a) {
-  const std::optional<std::size_t> own = period_along<N>(vectors, a);
-  if (!own) return own;
-  axis.period = std::abs(vectors[*own][static_cast<std::size_t>(a)]);
-  axis.last = axis.first + axis.period;
-  return own;
+std::optional<CutPeriod<N>> take_period(CutAxis& axis, std::span<const Period<N>> periods, int a) {
+  if constexpr (N >= 3) {
+    const std::optional<CutPeriod<N>> cuts = cut_period<N>(periods, unit_vector<N>(a));
+    if (!cuts) return cuts;
+    axis.period = cuts->length;
+    axis.last = axis.first + axis.period;
+    axis.is_moved = !cuts->is_straight;
+    return cuts;
+  }
+  return std::nullopt;
 }
 
-/// The axis of a wrapped contour: periodic if a period is along it, otherwise with the range of the unrolled contour.
+/// The axis of a wrapped contour: periodic if every place has a cut, otherwise with the range of the unrolled contour.
 /// `axis`: with the range of the wrapped contour. N is 3 to 5.
 template <int N>
-CutAxis wrapped_axis(CutAxis axis, int a, const std::vector<Period<N>>& periods);
+CutAxis axis_with_periods(CutAxis axis, int a, const std::vector<Period<N>>& periods);
 
-/// A place on an axis; if it is outside of the axis's range, moved there by periods.
+/// A place on an axis; if it is outside of the axis's range, moved there by periods, unless this moves the cut.
 double within_period(const CutAxis& axis, double place);
 
 /// The space that is cut.
@@ -77,6 +83,7 @@ struct CutSpace {
   const char* of = "";  ///< the object that the ranges belong to, for messages
   /// #V x axes.size() coordinates of a saved contour, not owned; empty for an image.
   std::span<const double> vertices = {};
+  std::vector<double> periods = {};  ///< period_numbers of a wrapped contour
 };
 CutSpace space_of(const AnyImage& image);
 CutSpace space_of(const AnyImage5d& image);
@@ -84,6 +91,13 @@ CutSpace space_of(const AnyImage5d& image);
 template <int N>
 CutSpace space_of(const Grid<N>& grid);
 CutSpace space_of(const Mesh& mesh);
+
+/// Makes the axes of a space periodic.
+template <int N>
+void take_periods(CutSpace& space, const std::vector<Period<N>>& periods) {
+  for (int a = 0; a < N; ++a) (void)take_period<N>(space.axes[static_cast<std::size_t>(a)], periods, a);
+  space.periods = period_numbers(periods);
+}
 
 /// Parses the values of --scale, one factor for each axis: "t=10", "x=2,y=3". Throws InvalidArgument.
 std::vector<double> parse_scale(const std::vector<std::string>& scale, const CutSpace& space);
@@ -95,9 +109,8 @@ std::vector<double> meet_vertices(std::vector<double> values, std::span<const do
                                   std::size_t axis);
 
 /// Completes cuts: sets the axes' own names, the normals, and levels for values that mean vertices or are outside of
-/// the range of a periodic axis. Throws
-/// InvalidArgument for axes and normals that the space does not have, EmptyResult for a cut outside of the space's
-/// extent unless `allow_empty`.
+/// the range of a periodic axis. Throws InvalidArgument for axes and normals that the space does not have, EmptyResult
+/// for a cut outside of the space's extent unless `allow_empty`.
 std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allow_empty);
 
 /// The error of a cut outside of an axis's range. `of`: the object with this range.

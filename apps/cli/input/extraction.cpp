@@ -90,12 +90,14 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
 void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> without_periods) {
   app_ = &app;
   without_periods_ = std::move(without_periods);
-  options_.push_back(add_word_list(app, "--periodic", periodic_,
-                                   "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
-                                   "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
-                                   "for longitudes, or as in x=2.5; auto: longitudes that span 360 degrees; none: no "
-                                   "axis, and no remark on such longitudes")
-                         ->type_name("AXES"));
+  options_.push_back(
+      add_word_list(app, "--periodic", periodic_,
+                    "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
+                    "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
+                    "for longitudes, or as in x=2.5, in the axis's unit, more than twice each step; "
+                    "auto: longitudes that span 360 degrees; none: no axis, and no remark on such "
+                    "longitudes")
+          ->type_name("AXES"));
   options_.push_back(app.add_option("--lattice", lattice_,
                                     "samples on a staggered lattice: odd layers are shifted by half a step along the "
                                     "axes before; triangular (2D), fcc or bcc (3D), d4 or fcc_in_time (4D); cubic: on "
@@ -390,35 +392,48 @@ struct AxisNames {
   bool is_longitude = false;       ///< has longitudes, by their unit
 };
 
+/// The names of axes for `axis_called`. One that is named by a letter, also by that of its curved coordinate, has it.
+std::vector<std::string> labels_of(const std::vector<AxisNames>& axes) {
+  std::vector<std::string> labels;
+  for (const AxisNames& axis : axes) {
+    const auto is_letter = [](const std::string& name) { return name.size() == 1; };
+    const auto letter = std::find_if(axis.names.begin(), axis.names.end(), is_letter);
+    labels.push_back(letter != axis.names.end() ? *letter : axis.names.front());
+  }
+  return labels;
+}
+
 /// The axis that a name of --periodic stands for: the one of this name, or else, if only one axis has longitudes, that
 /// one for lon and longitude, or else the axis of the letter x, y, z, t or u; axes.size() if there is none.
 std::size_t axis_of_period(const std::string& name, const std::vector<AxisNames>& axes) {
   const auto is_name = [&](const std::string& one) { return equal_ignoring_case(one, name); };
-  std::vector<std::string> letters;
-  for (std::size_t a = 0; a < axes.size(); ++a) {
+  for (std::size_t a = 0; a < axes.size(); ++a)
     if (std::any_of(axes[a].names.begin(), axes[a].names.end(), is_name)) return a;
-    letters.push_back(axis_label("", a));
-  }
   const auto has_longitudes = [](const AxisNames& axis) { return axis.is_longitude; };
   if ((is_name("lon") || is_name("longitude")) && std::count_if(axes.begin(), axes.end(), has_longitudes) == 1)
     return static_cast<std::size_t>(std::find_if(axes.begin(), axes.end(), has_longitudes) - axes.begin());
-  return axis_called(name, letters);
+  return axis_called(name, labels_of(axes));
 }
 
 [[noreturn]] void fail_to_name(const std::string& name, const std::vector<AxisNames>& axes) {
-  std::vector<std::string> all, letters;
-  bool has_names = false, has_longitudes = false;
+  std::vector<std::string> all, letters, with_axes;
+  bool has_longitudes = false;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     all.push_back(fmt::format("{}", fmt::join(axes[a].names, " or ")));
-    letters.push_back(axis_label("", a));
-    has_names = has_names || all.back() != letters.back();
     has_longitudes = has_longitudes || axes[a].is_longitude;
+    const std::string letter = axis_label("", a);
+    if (axis_of_period(letter, axes) != a) continue;
+    letters.push_back(letter);
+    if (letter != all.back()) with_axes.push_back(fmt::format("{} for {}", letter, axes[a].names.front()));
   }
+  std::string by_letters;
+  if (!with_axes.empty())
+    by_letters = letters.size() == axes.size() ? fmt::format(", or {} for them in this order", fmt::join(letters, ", "))
+                                               : fmt::format(", or {}", fmt::join(with_axes, ", "));
   throw Error(
       ErrorCode::InvalidArgument,
       fmt::format("--periodic {} names no axis; expected one of {}{}{}, or all, {}or none", name, fmt::join(all, ", "),
-                  has_names ? fmt::format(", or {} for them in this order", fmt::join(letters, ", ")) : "",
-                  has_longitudes ? ", or longitude" : "", axes.size() > 4 ? "" : "auto "));
+                  by_letters, has_longitudes ? ", or longitude" : "", axes.size() > 4 ? "" : "auto "));
 }
 
 /// The axes that --periodic names.

@@ -126,8 +126,10 @@ void ImageOptions::add_to(CLI::App& app) {
   options_.push_back(
       app.add_flag("--cells-to-points", cells_to_points_,
                    "meshes: values of cells become values of points, by the mean of the cells at a point"));
-  options_.push_back(
-      app.add_flag("--index-grid", index_grid_, "netCDF: indices in place of the coordinates of a curved grid"));
+  options_.push_back(app.add_flag("--index-grid", index_grid_,
+                                  "netCDF, --curved-grid: indices in place of the coordinates of a curved grid"));
+  options_.push_back(app.add_flag("--curved-grid", curved_grid_,
+                                  ".vts: as an image on a curved grid, with the options of images, and not as a mesh"));
   add_raw_to(app);
 }
 

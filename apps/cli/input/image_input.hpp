@@ -77,6 +77,8 @@ class ImageOptions {
   [[nodiscard]] bool raw() const { return raw_option_->count() > 0; }
   /// Whether --index-grid is given: indices as coordinates of curved grids.
   [[nodiscard]] bool index_grid() const { return index_grid_; }
+  /// Whether --curved-grid is given: structured grids as images.
+  [[nodiscard]] bool curved_grid() const { return curved_grid_; }
   /// Whether --fix is given.
   [[nodiscard]] bool has_fixed() const { return !fixed_.empty(); }
   /// The names of the options that were given.
@@ -107,6 +109,7 @@ class ImageOptions {
   bool in_process_ = false;
   bool cells_to_points_ = false;
   bool index_grid_ = false;
+  bool curved_grid_ = false;
   bool as_cubic_ = false;
   std::vector<std::string> fixed_;
   CLI::Option* raw_option_ = nullptr;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -39,6 +40,16 @@ CornerValues corner_values(const CellMesh& mesh) {
 }  // namespace
 
 bool are_cell_meshes(const std::vector<std::string>& files, const ImageOptions& images) {
+  if (images.curved_grid()) {
+    std::string extension = std::filesystem::path(files.front()).extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (images.raw() || (extension != ".vts" && extension != ".pvd"))
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--curved-grid with {}{}; expected it with a .vts file, or a .pvd file of them",
+                              files.front(), images.raw() ? " and --raw" : ""));
+    return false;
+  }
   return !images.raw() && is_cell_mesh_file(files.front(), images.allow_outside_paths());
 }
 
@@ -57,7 +68,9 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
                 fmt::format("{} with {}, which is a mesh; expected {}", option, file, expected));
   };
   if (const std::string tiling = extraction.given_tiling(); !tiling.empty())
-    fail(tiling, "an image, or the mesh without this option");
+    fail(tiling, file.ends_with(".vts") ? "an image, or the mesh without this option, or --curved-grid, which reads a "
+                                          "structured grid as an image"
+                                        : "an image, or the mesh without this option");
   const ExtractOptions options = extraction.library_options(true);
   if (options.normals != Normals::none && options.normals != Normals::differences)
     fail("--normals " + extraction.normals(), "--normals gradient, geometric or flat");

@@ -18,7 +18,7 @@ namespace tegl::cli {
 /// The length of a period along an axis of a grid; 0 if the period is along other axes, or if the axis's samples do not
 /// end about one step before it.
 template <int N>
-double period_along(const Grid<N>& grid, int axis, const Period<N>& period) {
+double period_of_axis(const Grid<N>& grid, int axis, const Period<N>& period) {
   const auto a = static_cast<std::size_t>(axis);
   if (grid.axes[a].size() < 2) return 0.0;
   double along = 0.0, square = 0.0, apart = 0.0, size = 0.0;
@@ -79,7 +79,7 @@ Attribute sample_across_periods(const OwnedImage<T, N>& owned, const Contour<N, 
   at.vertices = contour.vertices;
   for (const Period<N>& period : contour.periods)
     for (int a = 0; a < N; ++a) {
-      const double length = period_along(owned.grid, a, period);
+      const double length = period_of_axis(owned.grid, a, period);
       if (length == 0.0) continue;
       image = with_repeated_samples(image, a, length);
       // move the vertices into the period that begins at the image's first sample

@@ -56,8 +56,8 @@ using CurvedSeams = std::type_identity_t<std::span<const CurvedSeam<N>>>;
 
 /// The periods of `axes` that are given without a number: 360 for those with a unit of longitudes, whether even or not,
 /// and those of `sample_periods` for others. Errors: as `sample_periods`; InvalidArgument for longitudes that span 360
-/// degrees or more, as if the first sample is repeated at the end, and for longitudes with a gap of 180 degrees or more
-/// between the last sample and the first one.
+/// degrees or more, as if the first sample is repeated at the end, and for longitudes with a gap of 180 degrees or
+/// more, also between the last sample and the first one.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] AxisPeriods<N> default_periods(const Grid<N>& grid, std::span<const int> axes);
@@ -67,7 +67,7 @@ requires DimensionBetween<N, 2, 5>
 /// otherwise 0. `periods`, if any, has a number for each of the axes: the length of the seam along the axis's own
 /// coordinate, in the direction in which that grows, or NaN for the vector above. Errors: InvalidGrid (as
 /// `extract_curved`, and an axis that the grid does not have); InvalidArgument (as `default_periods`; another number of
-/// periods, or one that is not positive and finite).
+/// periods; one not positive and finite, or not more than twice the mean step across the seam, as in another unit).
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,

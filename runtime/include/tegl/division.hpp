@@ -65,7 +65,7 @@ requires DimensionBetween<N, 2, 5>
 ///
 /// `periods`: of periodic axes (tegl/periodic.hpp; 0: not periodic). Cells across the seam connect the last samples to
 /// the first ones, and the contour is wrapped (Contour::periods). `alternating` needs an even number of samples along
-/// them. In 2D to 4D each step along a periodic axis, with the one across the seam, is less than half the period.
+/// them. In 5D, steps of half a period or more are allowed; `unroll`, sizes and cuts then go the other way round.
 ///
 /// Normals are the image's gradients, of all kinds except `context`: linear along the edges of the division, with the
 /// mean of the corners' gradients at centres. So missing values do not count. They use the neighbours across the seam;
@@ -73,11 +73,11 @@ requires DimensionBetween<N, 2, 5>
 ///
 /// In 5D nothing is ambiguous, and `ambiguity` has no effect. Errors: those of `divided_complex`, of `extract` of
 /// complexes and of `extract_periodic`; InvalidArgument for normals by context, for an odd number of samples along a
-/// periodic axis with `alternating`, in 2D to 4D for steps of half a period or more, and in 5D for other triangulations
-/// than compact. Time in 5D: a pass over the samples for missing values, one over the cells, which reads each row of
-/// samples up to 16 times, and some microseconds (kuhn) or tens of microseconds (symmetric) per active cell. Memory
-/// beside the contour: 80 bytes (kuhn) or 280 (symmetric) per active cell, for a moment one byte per sample, and with
-/// missing values five bytes per sample. The result does not depend on the number of threads.
+/// periodic axis with `alternating`, and in 5D for other triangulations than compact. Time in 5D: a pass over the
+/// samples for missing values, one over the cells, which reads each row of samples up to 16 times, and some
+/// microseconds (kuhn) or tens of microseconds (symmetric) per active cell. Memory beside the contour: 80 bytes (kuhn)
+/// or 280 (symmetric) per active cell, for a moment one byte per sample, and with missing values five bytes per sample.
+/// The result does not depend on the number of threads.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] Contour<N, Real> extract_divided(const Image<T, N>& image, Division division, double isovalue,

@@ -65,9 +65,9 @@ requires DimensionBetween<N, 2, 4>
 ///
 /// Normals (Normals::differences) come from gradients by least squares on a sample and its neighbours on the lattice,
 /// interpolated along edges; they are exact for linear functions. Errors: those of `lattice_complex` and, for options,
-/// of `extract` of complexes; InvalidArgument for other normals, and for periods that are not the number of samples x
-/// the step. The result does not depend on the number of threads. O(P) time; about 1.3 bytes per sample of fcc, or, if
-/// cells are stored, twice the memory of `lattice_complex`.
+/// of `extract` of complexes; InvalidArgument for other normals, periods that are not the number of samples x the step,
+/// and cells of half a period or more (two steps across layers). The result does not depend on the number of threads.
+/// O(P) time; about 1.3 bytes per sample of fcc, or, if cells are stored, twice the memory of `lattice_complex`.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,

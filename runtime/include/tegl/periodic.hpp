@@ -74,10 +74,10 @@ requires DimensionBetween<N, 2, 4>
 ///
 /// At missing values the contour is made a manifold across the seam, too. Normals use the neighbours across the seam.
 /// ExtractOptions::close closes the contour at the borders of the other axes. The result does not depend on the number
-/// of threads. Errors: as `extract`; InvalidArgument for a period that is not positive and finite, is at most the
-/// distance between the first and the last sample, or has fewer than three samples, and for Ambiguity::custom. Time: as
-/// `extract`, and O(V / 64) and that of the vertices on the seam for merging. If only the last axis is periodic,
-/// samples are not copied; otherwise a few layers at a time.
+/// of threads. Errors: as `extract`; InvalidArgument for a period that is not positive and finite, or not more than the
+/// span of its axis, for fewer than three samples, for a step of half a period or more (as the one across the seam with
+/// a period in another unit), and for Ambiguity::custom. Time: as `extract`, and O(V / 64) and that of the vertices on
+/// the seam for merging. If only the last axis is periodic, samples are not copied; otherwise a few layers at a time.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_periodic(const Image<T, N>& image, const AxisPeriods<N>& periods,

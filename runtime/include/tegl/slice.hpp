@@ -58,17 +58,22 @@ namespace tegl {
 /// contour does not distinguish them: the limit may differ from the layer's contour by parts that are flat in the layer
 /// or lie along samples of the isovalue. `slice_image` reads the image and gives the layer's contour.
 ///
-/// A wrapped contour (tegl/periodic.hpp) is cut by hyperplanes along all of its periods, and the cut is wrapped, too;
-/// or across an axis with a period along it (`period_along`). Then the place is modulo this period, and the cut is that
-/// of the contour's endless repetition along it: complete and joined at the seam, also if the seam is not plane, with
-/// the other periods. `cuts_wrapped` tells which; other hyperplanes across a period are refused.
+/// A wrapped contour (tegl/periodic.hpp) is cut by hyperplanes along all of its periods, and the cut is wrapped, too.
+/// Hyperplanes across periods cut the contour's endless repetition, if this repeats itself along them: independent sums
+/// of multiples of the periods, one less than there are periods, are along the hyperplane (`cuts_wrapped`,
+/// `cut_period`). So every place on a periodic axis has a cut, also on the axes of an oblique unit cell if whole
+/// numbers of cells fit together along them, and so has every lattice plane of a contour with N periods. The cut is
+/// complete and joined at the seam, also if the seam is not plane, and has these sums as its periods. Other hyperplanes
+/// across a period are refused.
 ///
 /// Quadrilaterals are split by the shorter diagonal; prisms (N = 5) into three tetrahedra, in the order of the
 /// contour's vertex numbers. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
-/// attributes or normals of another number, a wrapped contour unless `cuts_wrapped`), Cancelled. If the hyperplane is
-/// beyond the contour, the cut is empty. O(#S + #V) time, plus O(c log c) for a cut of c simplices; #V bytes plus O(c)
-/// memory, across a period 8 #V bytes. The result does not depend on the number of threads. Thread-safe.
+/// attributes or normals of another number, a wrapped contour unless `cuts_wrapped`; across a period, an offset or a
+/// coordinate more than 2^29 periods from its start, and simplices of half a period of the cut or more if this is a sum
+/// of several periods), Cancelled. If the hyperplane is beyond the contour, the cut is empty. O(#S + #V) time, plus
+/// O(c log c) for a cut of c simplices; #V bytes plus O(c) memory, and 8 #V bytes for each period that is crossed. The
+/// result does not depend on the number of threads. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] Contour<N - 1, Real> slice(const Contour<N, Real>& contour, const Hyperplane<N>& hyperplane,
@@ -92,21 +97,41 @@ requires DimensionBetween<N, 3, 5>
   return slice_stack(contour, std::span<const Hyperplane<N>>(hyperplanes.begin(), hyperplanes.size()), work);
 }
 
-/// Whether `slice` cuts a wrapped contour with these periods by the hyperplane; if not, unroll it first. Throws
-/// InvalidArgument if the normal is 0 or not finite. N = 3 to 5.
+/// Whether `slice` cuts a wrapped contour with these periods by the hyperplane; if not, unroll it first. It does if the
+/// hyperplane crosses no period, or if
+/// - the heights <normal, vector> of the periods are multiples of one height, by whole numbers: for N periods, if the
+///   hyperplane is a lattice plane. At most 32 multiples of a period are added to others.
+/// - no part of the normal is along an axis that is not periodic: axes of its parts are combinations of the periods.
+///
+/// Parts of vectors are compared by axis, so units of axes do not matter. Parts below a millionth of the longest part
+/// of a period along the same axis are taken for rounding; if all periods have less than a millionth of their lengths
+/// along an axis, all of these. Throws InvalidArgument if the normal is 0 or not finite. N = 3 to 5.
 template <int N>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods,
                                 const Hyperplane<N>& hyperplane);
 
-/// The period along an axis: the number of the only one of `vectors` (of periods, in world coordinates) with a part
-/// along the axis, if the rest of it is a combination of the others, up to rounding (parts below 3e-5 of its length).
-/// Places across the axis are modulo this part. None: no vector has such a part, several have, or the only one is
-/// oblique. N = 2 to 5.
+/// The period of the offsets of parallel hyperplanes that cut a wrapped contour.
 template <int N>
-requires DimensionBetween<N, 2, 5>
-[[nodiscard]] std::optional<std::size_t> period_along(std::type_identity_t<std::span<const Vector<N>>> vectors,
-                                                      int axis);
+struct CutPeriod {
+  /// From a hyperplane to the next one with the same cut, moved by this vector: a sum of multiples of the contour's
+  /// periods, in world coordinates.
+  Vector<N> vector = {};
+  double length = 0.0;  ///< of the offsets, above 0: <normal, vector>
+  /// The offset at which a period begins: at the seam, if this has the direction of the hyperplanes.
+  double first = 0.0;
+  /// Whether the hyperplanes are across an axis and the vector is along it, up to rounding. Then cuts whose offsets
+  /// differ by multiples of the length are equal, and `slice` makes them at the place in [first, first + length).
+  bool is_straight = false;
+};
+
+/// How cuts of a wrapped contour repeat themselves. None if hyperplanes with this normal cross none of the periods, or
+/// if they do not cut a wrapped contour (`cuts_wrapped`). Otherwise every offset has a cut. Throws InvalidArgument if
+/// the normal is 0 or not finite. N = 3 to 5.
+template <int N>
+requires DimensionBetween<N, 3, 5>
+[[nodiscard]] std::optional<CutPeriod<N>> cut_period(std::type_identity_t<std::span<const Period<N>>> periods,
+                                                     const std::type_identity_t<Vector<N>>& normal);
 
 /// A place on a periodic axis, moved by multiples of the period into [first, first + period). Unchanged if it is not
 /// finite or the period is not positive.

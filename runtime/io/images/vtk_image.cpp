@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Makes images of VTK's ImageData and RectilinearGrid.
+// Makes images of VTK's ImageData and RectilinearGrid, and, on curved grids, of StructuredGrid.
 #include "images/vtk_image.hpp"
 
 #include <algorithm>
@@ -30,13 +30,9 @@ using Sizes = std::array<std::uint64_t, 3>;
 /// An open file with the chosen array.
 struct OpenVtkImage {
   explicit OpenVtkImage(const fs::path& path, const Progress& progress) : file(path, progress) {
-    if (file.type() != "ImageData" && file.type() != "RectilinearGrid") {
-      const char* const extension = file.type() == "UnstructuredGrid" ? ".vtu"
-                                    : file.type() == "StructuredGrid" ? ".vts"
-                                                                      : nullptr;
+    if (file.type() != "ImageData" && file.type() != "RectilinearGrid" && file.type() != "StructuredGrid")
       fail(ErrorCode::UnsupportedData, path, "holds a mesh ({}); expected an image: ImageData or RectilinearGrid{}",
-           shown(file.type()), extension ? fmt::format(", or the extension {} for this mesh", extension) : "");
-    }
+           shown(file.type()), file.type() == "UnstructuredGrid" ? ", or the extension .vtu for this mesh" : "");
     all = variables_of(file);
   }
 
@@ -150,6 +146,71 @@ RawGrid rectilinear_grid(OpenVtkImage& image, const std::array<std::size_t, 3>& 
   return grid;
 }
 
+/// Throws UnsupportedData if a piece has an array that hides cells or points.
+void require_no_hidden(const VtkFile& file) {
+  for (const XmlElement* const piece : file.pieces())
+    for (const char* const parent : {"CellData", "PointData"})
+      for (const VtkArray& array : file.arrays(piece->child(parent)))
+        if (array.name == "vtkGhostType")
+          fail(ErrorCode::UnsupportedData, file.path(),
+               "a curved grid with hidden cells or points (the array 'vtkGhostType'); expected none, or the file as a "
+               "mesh, which leaves them out");
+}
+
+/// The coordinates x, y and z of the points of a StructuredGrid.
+std::array<std::vector<double>, 3> coordinates_of_points(const VtkFile& file, const Progress& progress) {
+  const VtkArray array = file.array(*file.pieces().front(), "Points", "");
+  if (array.components != 3)
+    fail(ErrorCode::MalformedFile, file.path(), "points of {} components; expected 3", array.components);
+  std::array<std::vector<double>, 3> columns;
+  std::visit(
+      [&](const auto& numbers) {
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+          const auto x = static_cast<double>(numbers[i]);
+          if (!std::isfinite(x))
+            fail(ErrorCode::MalformedFile, file.path(), "the coordinate {} of point {} is {}; expected finite numbers",
+                 "xyz"[i % 3], i / 3, x);
+          columns[i % 3].push_back(x);
+        }
+      },
+      read_structured(file, "Points", array.name, 3, false, progress));
+  return columns;
+}
+
+/// The grid of a StructuredGrid: indices i, j and k, and coordinates x, y and z, of which a plane grid drops the one
+/// that is constant.
+RawGrid curved_grid(OpenVtkImage& image, const std::array<std::size_t, 3>& order, const Progress& progress) {
+  const VtkFile& file = image.file;
+  if (image.variable.on_cells)
+    fail(ErrorCode::UnsupportedData, file.path(),
+         "'{}' has values of cells on a curved grid; expected values of points, or the file read as a mesh",
+         image.variable.name);
+  require_no_hidden(file);
+  const auto dims = std::ranges::count_if(image.sizes, [](auto size) { return size > 1; });
+  if (dims < 2)
+    fail(ErrorCode::UnsupportedData, file.path(), "a structured grid of {} points; expected at least 2 along two axes",
+         fmt::join(image.sizes, " x "));
+  auto columns = coordinates_of_points(file, progress);
+  std::size_t dropped = 3;
+  for (std::size_t c = 0; c < 3 && dims == 2; ++c)
+    if (std::ranges::all_of(columns[c], [&](double x) { return x == columns[c].front(); })) dropped = c;
+  if (dims == 2 && dropped == 3)
+    fail(ErrorCode::UnsupportedData, file.path(),
+         "a structured grid of {} points on a curved surface; expected one in a plane where x, y or z is constant",
+         fmt::join(image.sizes, " x "));
+  RawGrid grid{{}, Eigen::MatrixXd::Identity(3, 3), Eigen::VectorXd::Zero(3), {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    grid.axes.push_back(Axis::uniform(static_cast<std::size_t>(image.sizes[order[c]])));
+    if (c == dropped) continue;
+    CurvedAxis& one = image.info.curved.emplace_back();
+    one.axis = static_cast<int>(image.info.curved.size()) - 1;
+    one.along = dims == 2 ? 3u : 7u;
+    one.values = std::move(columns[c]);
+    one.name = std::string(1, "xyz"[c]);
+  }
+  return grid;
+}
+
 std::unique_ptr<OpenVtkImage> open_vtk(const fs::path& path, const ReadImageOptions& options) {
   if (!options.fixed.empty())
     fail(ErrorCode::InvalidArgument, path,
@@ -159,8 +220,11 @@ std::unique_ptr<OpenVtkImage> open_vtk(const fs::path& path, const ReadImageOpti
   image->variable = choose_variable(image->file, image->all, options.variable);
   image->sizes = whole_extent(image->file).sizes(image->variable.on_cells);
   const auto order = order_of_axes(image->sizes);
-  image->grid = image->file.type() == "ImageData" ? uniform_grid(*image, order) : rectilinear_grid(*image, order);
-  for (std::size_t a = 0; a < 3; ++a) image->grid.axes[a].name = std::string(1, "xyz"[order[a]]);
+  const bool is_curved = image->file.type() == "StructuredGrid";
+  image->grid = is_curved                           ? curved_grid(*image, order, options.work.progress)
+                : image->file.type() == "ImageData" ? uniform_grid(*image, order)
+                                                    : rectilinear_grid(*image, order);
+  for (std::size_t a = 0; a < 3; ++a) image->grid.axes[a].name = std::string(1, (is_curved ? "ijk" : "xyz")[order[a]]);
   if (const auto time = image->file.time()) {
     image->grid.single.push_back({Axis::uniform(1, *time)});
     image->grid.single.back().axis.name = "t";

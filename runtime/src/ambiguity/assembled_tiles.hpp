@@ -20,9 +20,11 @@ namespace tegl::detail {
 /// the numbers of own vertices and of simplices; the masks; the simplices, two per word.
 class AssembledTiles {
  public:
-  /// Removes all tiles. Memory is kept.
-  void clear() noexcept {
+  /// Removes all tiles. Memory is kept. `expected`: words that will probably be kept; the first growth makes room for
+  /// as many.
+  void clear(std::size_t expected) noexcept {
     size_ = 0;
+    expected_ = expected;
     is_full_ = false;
   }
   [[nodiscard]] bool is_full() const noexcept { return is_full_; }
@@ -38,7 +40,7 @@ class AssembledTiles {
     const std::size_t room = std::max(end, simplices + kAtOnce / 2);
     is_full_ = room > most;
     if (is_full_) return;
-    if (room > words_.size()) enlarge(std::min(most, room + unused(words_.size())));
+    if (room > words_.size()) enlarge(std::min(most, std::max(room + unused(words_.size()), expected_)));
     size_ = end;
     std::uint64_t* const to = words_.data() + first;
     std::memcpy(to, tile.lists.data(), sizeof tile.lists);
@@ -83,6 +85,7 @@ class AssembledTiles {
 
   Buffer<std::uint64_t> words_;
   std::size_t size_ = 0;  ///< of those in use
+  std::size_t expected_ = 0;
   bool is_full_ = false;
 };
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "ambiguity/connected_sides.hpp"
+#include "ambiguity/cube_lists.hpp"
 #include "ambiguity/saddle.hpp"
-#include "hwy/cache_control.h"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
 
@@ -145,106 +145,69 @@ class WordResolver {
       : estimator_(estimator), block_(block), of_(of), cubes_(ResolvedCubes::instance(estimator.triangulation())) {}
 
   void resolve() noexcept {
-    if (estimator_.separates())
-      take_separate();
-    else if (estimator_.is_by_means())
-      take_means();
-    else
-      take_joins();
+    find_cubes();
+    if (decides_joins()) decide_joins();
     find_apart();
   }
 
  private:
-  /// Squares and tiles; calls take(tile, entry), where entry(cube) numbers the cube's entry in the table of resolved
-  /// cubes.
-  template <class Take>
-  void take_faces(const Take& take) noexcept {
+  [[nodiscard]] bool decides_joins() const noexcept { return !estimator_.separates() && !estimator_.is_by_means(); }
+  [[nodiscard]] const CubeListTable& lists() const noexcept {
+    using Content = CubeListTable::Content;
+    const Content by_centre = estimator_.is_by_means() ? Content::by_centre : Content::with_joins;
+    return CubeListTable::instance(estimator_.separates() ? Content::separate : by_centre, estimator_.triangulation());
+  }
+
+  /// Squares, tiles and cubes; joins are not decided.
+  void find_cubes() noexcept {
     const bool separates = estimator_.separates();
     of_.unsure = 0;
     for (std::size_t j = 0; j < of_.count; ++j) {
       const unsigned bit = of_.bits[j], signature = of_.signatures[j];
       const std::uint64_t high = block_.high[bit];
       of_.unsure |= (block_.unsure >> bit & 1u) << j;
-      ResolvedTile& tile = of_.tiles[j];
-      ResolvedKey& key = tile.key;
+      ResolvedKey& key = of_.tiles[j].key;
       key.signature = static_cast<std::uint16_t>(signature);
       key.squares = static_cast<std::uint32_t>(high) & 0xffffffu;
-      key.low_cubes = key.high_cubes = 0;
       const auto choice = (high >> kTesseractFace & 1u) != 0 ? tile::Choice::high : tile::Choice::low;
       key.tile = separates ? tile::Choice::separate : choice;
-      const std::uint64_t signatures = cubes_.signatures(key.signature), squares = cubes_.squares(key.squares);
-      take(j, [&](unsigned f) {
-        return cubes_.entry(static_cast<unsigned>(signatures >> (8 * f) & 255),
-                            static_cast<unsigned>(squares >> (8 * f) & 63));
-      });
+      const unsigned high_cubes = estimator_.is_by_means() ? static_cast<unsigned>(high >> kFirstCube<4>) & 255u : 0;
+      faces_[j] = {cubes_.signatures(key.signature), cubes_.squares(key.squares), high_cubes};
+    }
+    find_lists(lists(), {faces_.data(), of_.count}, found_.data());
+    for (std::size_t j = 0; j < of_.count; ++j) {
+      ResolvedTile& tile = of_.tiles[j];
+      tile.lists = found_[j].wanted;
+      tile.with_vertices = found_[j].with_vertices;
+      const unsigned with_choice = decides_joins() ? 0u : found_[j].with_choice;
+      tile.key.high_cubes = static_cast<std::uint8_t>(with_choice & faces_[j].second);
+      tile.key.low_cubes = static_cast<std::uint8_t>(with_choice & ~faces_[j].second);
     }
   }
 
-  /// Whether a list has vertices, as bit `cube`. Without a branch: few have, which is hard to predict.
-  [[nodiscard]] unsigned with_vertices(unsigned list, unsigned cube) const noexcept {
-    return (cubes_.own_vertices(list) != 0 ? 1u : 0u) << cube;
-  }
-
-  void take_separate() noexcept {
-    take_faces([&](std::size_t j, const auto& entry) {
-      ResolvedTile& tile = of_.tiles[j];
-      unsigned with = 0;
-      for (unsigned f = 0; f < 8; ++f) {
-        const unsigned list = tile.lists[f] = cubes_.list_of_entry(entry(f), tile::Choice::separate);
-        with |= with_vertices(list, f);
-      }
-      tile.with_vertices = static_cast<std::uint8_t>(with);
-    });
-  }
-
-  void take_means() noexcept {
-    take_faces([&](std::size_t j, const auto& entry) {
-      ResolvedTile& tile = of_.tiles[j];
-      const auto high_cubes = static_cast<unsigned>(block_.high[of_.bits[j]] >> kFirstCube<4>);
-      unsigned with = 0, with_choice = 0;
-      for (unsigned f = 0; f < 8; ++f) {
-        const ResolvedCubes::Entry& of_cube = cubes_.at_entry(entry(f));  // a copy would be stored and loaded again
-        const unsigned list = tile.lists[f] = of_cube.lists[1 + (high_cubes >> f & 1u)];  // equal without a choice
-        with |= with_vertices(list, f);
-        with_choice |= unsigned{of_cube.has_choice} << f;
-      }
-      tile.with_vertices = static_cast<std::uint8_t>(with);
-      tile.key.high_cubes = static_cast<std::uint8_t>(with_choice & high_cubes);
-      tile.key.low_cubes = static_cast<std::uint8_t>(with_choice & ~high_cubes);
-    });
-  }
+  /// The entry of a cube in the table of resolved cubes.
+  [[nodiscard]] unsigned entry_of(std::size_t j, unsigned cube) const noexcept { return found_[j].second[cube]; }
 
   /// Decides the centres of cubes by the trilinear interpolant. Those with one pair of edges are listed without
   /// branches and asked about together.
-  void take_joins() noexcept {
-    take_faces([&](std::size_t j, const auto& entry) {
-      for (unsigned f = 0; f < 8; ++f) {
-        const unsigned number = entry(f);
-        entries_[j][f] = static_cast<std::uint16_t>(number);
-        of_.tiles[j].lists[f] = cubes_.list_of_entry(number, tile::Choice::separate);
-      }
-    });
-    const auto& joins = cube_joins();
+  void decide_joins() noexcept {
     std::array<std::uint16_t, 8 * kWordBits> asked;  // 8 * tile + cube
     std::size_t count = 0;
     for (std::size_t j = 0; j < of_.count; ++j) {
-      unsigned with_more = 0;
       for (unsigned f = 0; f < 8; ++f) {
-        const unsigned pairs = joins[entries_[j][f]].pairs;
         asked[count] = static_cast<std::uint16_t>(8 * j + f);
-        count += static_cast<std::size_t>(pairs == 1);
-        with_more |= static_cast<unsigned>(pairs > 1) << f;
+        count += found_[j].with_choice >> f & 1u;
       }
+      unsigned with_more = found_[j].with_pairs;
       for (; with_more != 0; with_more &= with_more - 1) {
         const auto f = static_cast<unsigned>(std::countr_zero(with_more));
         std::array<double, 8> values;
         for (unsigned corner = 0; corner < 8; ++corner) values[corner] = value(j, f, corner);
-        join_cube(j, f, detail::decide_centre(values, estimator_.isovalue(), entries_[j][f]));
+        join_cube(j, f, detail::decide_centre(values, estimator_.isovalue(), entry_of(j, f)));
       }
     }
     for (std::size_t first = 0; first < count; first += JoinQuestions::kMost)
       ask_about({asked.data() + first, std::min(JoinQuestions::kMost, count - first)});
-    find_vertices();
   }
   void ask_about(std::span<const std::uint16_t> asked) noexcept {
     JoinQuestions questions;
@@ -259,11 +222,13 @@ class WordResolver {
     }
   }
   [[nodiscard]] const tables::CubeJoin& join_of(unsigned cube) const noexcept {
-    return cube_joins()[entries_[cube / 8][cube % 8]];
+    return cube_joins()[entry_of(cube / 8, cube % 8)];
   }
   void join_cube(std::size_t j, unsigned f, tile::Choice choice) noexcept {
     ResolvedTile& tile = of_.tiles[j];
-    tile.lists[f] = cubes_.list_of_entry(entries_[j][f], choice);
+    const unsigned list = tile.lists[f] = cubes_.list_of_entry(entry_of(j, f), choice);
+    const unsigned with_vertices = (cubes_.own_vertices(list) != 0 ? 1u : 0u) << f;
+    tile.with_vertices = static_cast<std::uint8_t>((tile.with_vertices & ~(1u << f)) | with_vertices);
     const auto is_low = static_cast<unsigned>(choice == tile::Choice::low);
     const auto is_high = static_cast<unsigned>(choice == tile::Choice::high);
     tile.key.low_cubes = static_cast<std::uint8_t>(tile.key.low_cubes | is_low << f);
@@ -278,15 +243,6 @@ class WordResolver {
       return at;
     }();
     return block_.samples[0].data()[kAt[cube][corner] + of_.bits[j]];
-  }
-
-  void find_vertices() noexcept {
-    for (std::size_t j = 0; j < of_.count; ++j) {
-      ResolvedTile& tile = of_.tiles[j];
-      unsigned with = 0;
-      for (unsigned f = 0; f < 8; ++f) with |= with_vertices(tile.lists[f], f);
-      tile.with_vertices = static_cast<std::uint8_t>(with);
-    }
   }
 
   void find_apart() noexcept {
@@ -311,7 +267,8 @@ class WordResolver {
   const FaceBlock<4>& block_;
   TesseractsOfWord& of_;
   const ResolvedCubes& cubes_;
-  std::array<std::array<std::uint16_t, 8>, kWordBits> entries_;
+  std::array<WantedLists, kWordBits> faces_;
+  std::array<FoundLists, kWordBits> found_;
 };
 
 }  // namespace
@@ -337,24 +294,11 @@ void RowOfTesseracts::begin_word(std::size_t word, std::uint32_t ordinal) noexce
   if (has_many_) detail::resolve(estimator_, faces_.look_at(word), of_word_);
 }
 
-/// Starts to load the data from which the builder assembles a tile: they do not fit into the nearest caches.
-void RowOfTesseracts::fetch(const ResolvedCubes& cubes, const ResolvedTile& tile) noexcept {
-  for (unsigned f = 0; f < 8; ++f) {
-    const unsigned list = tile.lists[f];
-    hwy::Prefetch(cubes.triangles(f, list).words);
-    if (tile.apart == 0) continue;
-    const std::uint32_t part = ResolvedCubes::first_part(f) + cubes.summary(list).first_part;
-    hwy::Prefetch(cubes.part_vertices() + part);
-    hwy::Prefetch(cubes.part_apexes() + part);
-  }
-}
-
 const ResolvedTile& RowOfTesseracts::resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
                                              unsigned signature) noexcept {
   if (at_once_ && ambiguous_signatures<4>()[signature]) {
     if (base[0] / kWordBits != word_) begin_word(base[0] / kWordBits, ordinal);
     const std::size_t number = number_[ordinal - first_];
-    if (has_many_ && number + 1 < of_word_.count) fetch(cubes_, of_word_.tiles[number + 1]);
     if (has_many_ && (of_word_.unsure >> number & 1u) == 0) return of_word_.tiles[number];
   }
   return alone_ = resolved_tile(estimator_, base, signature);

@@ -46,7 +46,6 @@ class RowOfTesseracts {
   RowOfTesseracts(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base, std::size_t samples,
                   const RowTiles& tiles, TesseractsOfWord& of_word) noexcept
       : estimator_(estimator),
-        cubes_(ResolvedCubes::instance(estimator.triangulation())),
         tiles_(tiles),
         at_once_(samples <= kMostListed && RowFaces<4>::can_use(estimator)),
         faces_(estimator, base, samples),
@@ -58,10 +57,8 @@ class RowOfTesseracts {
 
  private:
   void begin_word(std::size_t word, std::uint32_t ordinal) noexcept;
-  static void fetch(const ResolvedCubes& cubes, const ResolvedTile& tile) noexcept;
 
   const FaceEstimator<4>& estimator_;
-  const ResolvedCubes& cubes_;
   RowTiles tiles_;
   bool at_once_;
   std::size_t word_ = ~std::size_t{0};

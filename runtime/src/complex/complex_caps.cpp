@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Caps of contours of complexes. The high part of an edge is a segment. That of a quadrilateral is triangulated by the
-// table that closes contours of images; the high part of a triangle is a fan. The high part of a 3D facet is divided
-// into tetrahedra between fans in the polygons around it and the contour's triangles in the facet. The fans start at a
-// corner that depends on the numbers of the polygon's corners, so both facets at a polygon have the same triangles;
-// those of a grid's cubes are the image's.
+// Caps of contours of complexes. The high part of an edge is a segment, that of a polygon one fan or several. The high
+// part of a 3D facet is divided into tetrahedra between fans in the polygons around it and the contour's triangles in
+// the facet. The fans start at a corner that depends on the numbers of the polygon's corners, so both facets at a
+// polygon have the same triangles, and cuts at the times of a mesh have those of the mesh; those of a grid's cubes are
+// the image's.
 #include "complex/complex_caps.hpp"
 
 #include <algorithm>
@@ -17,11 +17,16 @@
 #include "base/progress.hpp"
 #include "complex/cell_cases.hpp"
 #include "complex/edge_alpha.hpp"
-#include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tile/tesseract_fill.hpp"
 
 namespace tegl::detail {
+
+void add_fan(std::vector<CapVertex> part, std::vector<std::array<CapVertex, 3>>& triangles) {
+  add_fan(
+      std::move(part), [](CapVertex v) { return v.is_corner() ? static_cast<Index>(v.number()) : kNoPoint; },
+      triangles);
+}
 
 template <int N>
 ComplexCaps<N>::ComplexCaps(const CellGroups& cells, const CellSigns& signs, const BorderFacets& border,
@@ -93,18 +98,13 @@ void ComplexCaps<N>::add_facet(const Facet& facet) {
     };
     add_simplex({at(0), at(1)}, facet.flip);
   } else if constexpr (N == 3) {
-    if (facet.of.shape == tables::CellShape::quadrilateral) {
-      static constexpr std::uint8_t kAround[] = {0, 1, 3, 2};
-      const auto alternative = joins(facet, kAround) ? tile::Alternative::high : tile::Alternative::low;
-      add_table(facet, tables::region_table(2, options_.triangulation, alternative));
-      return;
-    }
-    static constexpr std::uint8_t kAround[] = {0, 1, 2};
+    static constexpr std::uint8_t kAround[] = {0, 1, 2}, kAroundSquare[] = {0, 1, 3, 2};
     std::vector<Part> parts;
-    cut(facet, kAround, parts, nullptr);
-    for (const Part& part : parts)
-      for (std::size_t i = 2; i < part.size(); ++i)
-        add_simplex({vertex(facet, part[0]), vertex(facet, part[i - 1]), vertex(facet, part[i])}, facet.flip);
+    std::vector<RegionDivision::Triangle> triangles;
+    facet.of.corner_count == 3 ? cut(facet, kAround, parts, nullptr) : cut(facet, kAroundSquare, parts, nullptr);
+    for (Part& part : parts) add_fan_in(facet, std::move(part), triangles);
+    for (const auto& [a, b, c] : triangles)
+      add_simplex({vertex(facet, a), vertex(facet, b), vertex(facet, c)}, facet.flip);
   } else {
     add_regions(facet);
   }
@@ -122,13 +122,9 @@ void ComplexCaps<N>::add_face(const std::vector<Index>& points, bool flip) {
     };
     if (is_high(0) || is_high(1)) add_simplex({at(0), at(1)}, flip);
   } else if constexpr (N == 3) {
-    for (auto& run :
-         parts_around(points)) {  // fans from a corner: other sides than those of the part are in this face alone
-      const auto corner = std::find_if(run.begin(), run.end(), [](CapVertex v) { return v.is_corner(); });
-      if (corner == run.end()) continue;
-      std::rotate(run.begin(), corner, run.end());
-      for (std::size_t i = 2; i < run.size(); ++i) add_simplex({run[0], run[i - 1], run[i]}, flip);
-    }
+    std::vector<Simplex> triangles;
+    for (auto& run : parts_around(points)) add_fan(std::move(run), triangles);
+    for (const Simplex& triangle : triangles) add_simplex(triangle, flip);
   }
 }
 
@@ -238,47 +234,9 @@ void ComplexCaps<N>::cut(const Facet& facet, std::span<const std::uint8_t> aroun
 }
 
 template <int N>
-void ComplexCaps<N>::add_table(const Facet& facet, const tables::RegionTable& table) {
-  const tables::RegionList& list = table.lists[facet.high];
-  const auto shared = [&](unsigned v) {  // the table has 4 corners
-    if (v < 4) return CapVertex::corner(facet.points[v]);
-    const unsigned base = edge_base(2, v - 4);
-    return on_edge(facet.points[base], facet.points[base | 1u << (v - 4) / 2]);
-  };
-  const std::uint64_t first = first_point_.size() - 1;
-  for (unsigned j = 0; j < list.own_vertices; ++j) {
-    std::vector<CapVertex> points;
-    for (std::uint32_t mask = table.masks[list.first_mask + j]; mask != 0; mask &= mask - 1)
-      points.push_back(shared(static_cast<unsigned>(std::countr_zero(mask))));
-    (void)add_mean(points);
-  }
-  const std::uint8_t* stored = table.simplices + std::size_t{list.first_simplex} * N;
-  for (unsigned q = 0; q < list.simplex_count; ++q, stored += N) {
-    Simplex simplex;
-    for (int j = 0; j < N; ++j)
-      simplex[j] = stored[j] < tables::first_region_vertex(2)
-                       ? shared(stored[j])
-                       : CapVertex::added(first + stored[j] - tables::first_region_vertex(2));
-    add_simplex(simplex, facet.flip);
-  }
-}
-
-/// The corner at which the fan of a part of a polygon starts: the one between two others, if there are three; else the
-/// one with the smallest number.
-template <int N>
-std::size_t ComplexCaps<N>::fan_start(const Facet& facet, const Part& part) {
-  const std::size_t size = part.size();
-  const auto is_corner = [&](std::size_t i) { return part[i % size] < ShapeVertices::kFirstEdge; };
-  std::size_t corners = 0, start = size;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (!is_corner(i)) continue;
-    ++corners;
-    if (start == size || facet.points[part[i]] < facet.points[part[start]]) start = i;
-  }
-  if (corners != 3) return start;
-  for (std::size_t i = 0; i < size; ++i)
-    if (is_corner(i) && is_corner(i + 1) && is_corner(i + 2) && size > 3) return (i + 1) % size;
-  return start;
+void ComplexCaps<N>::add_fan_in(const Facet& facet, Part part, std::vector<RegionDivision::Triangle>& triangles) {
+  add_fan(
+      std::move(part), [&](Local v) { return v < ShapeVertices::kFirstEdge ? facet.points[v] : kNoPoint; }, triangles);
 }
 
 template <int N>
@@ -293,10 +251,7 @@ typename ComplexCaps<N>::Boundary ComplexCaps<N>::boundary_of(const Facet& facet
     cut(facet, {around.data(), face.corner_count}, parts, &next);
   }
   Boundary boundary;
-  for (Part& part : parts) {
-    std::rotate(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(fan_start(facet, part)), part.end());
-    for (std::size_t i = 2; i < part.size(); ++i) boundary.triangles.push_back({part[0], part[i - 1], part[i]});
-  }
+  for (Part& part : parts) add_fan_in(facet, std::move(part), boundary.triangles);
   boundary.sides = boundary.triangles.size();
   if (!facet.is_active()) return boundary;
   if (facet.contour.cube)

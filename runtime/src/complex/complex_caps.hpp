@@ -3,10 +3,13 @@
 // Caps: the high part of the border of a complex, which closes a contour there.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/progress.hpp"
@@ -16,7 +19,6 @@
 #include "polytope/solid_facets.hpp"
 #include "regions/decided_regions.hpp"
 #include "regions/region_divisions.hpp"
-#include "tegl/table_contract.hpp"
 
 namespace tegl::detail {
 
@@ -39,6 +41,29 @@ class CapVertex {
   explicit CapVertex(std::uint64_t bits) noexcept : bits_(bits) {}
   std::uint64_t bits_ = 0;
 };
+
+/// Appends the triangles of a fan in a part of a polygon, with vertices in the order around it. The fan starts at the
+/// corner between two others, if the part has three and further vertices, otherwise at the corner with the smallest
+/// number. So all facets at a polygon have the same triangles, and so has a mesh at each of its times. `corner_of`: the
+/// number of a corner; kNoPoint for a vertex on an edge.
+template <class Vertex, class CornerOf>
+void add_fan(std::vector<Vertex> part, const CornerOf& corner_of, std::vector<std::array<Vertex, 3>>& triangles) {
+  const std::size_t size = part.size();
+  const auto corner = [&](std::size_t i) { return corner_of(part[i % size]); };
+  std::size_t corners = 0, start = size;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (corner(i) == kNoPoint) continue;
+    ++corners;
+    if (start == size || corner(i) < corner(start)) start = i;
+  }
+  for (std::size_t i = 0; corners == 3 && size > 3 && i < size; ++i)
+    if (corner(i) != kNoPoint && corner(i + 1) != kNoPoint && corner(i + 2) != kNoPoint) start = (i + 1) % size;
+  if (corners == 0) return;
+  std::rotate(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(start), part.end());
+  for (std::size_t i = 2; i < size; ++i) triangles.push_back({part[0], part[i - 1], part[i]});
+}
+/// The same for vertices of caps.
+void add_fan(std::vector<CapVertex> part, std::vector<std::array<CapVertex, 3>>& triangles);
 
 /// The caps of a contour, without positions. Facets of cells with missing corners have none.
 template <int N>
@@ -103,7 +128,6 @@ class ComplexCaps {
   /// Polytopes::entangled_facet.
   void add_tabled(const SolidFacet& facet, const Index* points, bool flip);
   void add_solid(const SolidFacet& facet, const Index* points, std::optional<Index> name, bool flip);
-  void add_table(const Facet& facet, const tables::RegionTable& table);
   [[nodiscard]] Boundary boundary_of(const Facet& facet) const;
   /// Adds the contour's polygons in a facet. `next`: by vertex, the end of its segment, or the vertex itself.
   using Segments = std::array<Local, ShapeVertices::kFirstCentre>;
@@ -120,7 +144,8 @@ class ComplexCaps {
   void add_regions(const Facet& facet);
   [[nodiscard]] const RegionDivision& division_of(const Facet& facet, Boundary& boundary);
   [[nodiscard]] ShapePlaces places_of(const Facet& facet, const Boundary& boundary) const;
-  [[nodiscard]] static std::size_t fan_start(const Facet& facet, const Part& part);
+  /// Appends a fan in a part of a facet's polygon.
+  static void add_fan_in(const Facet& facet, Part part, std::vector<RegionDivision::Triangle>& triangles);
   [[nodiscard]] CapVertex on_edge(Index p, Index q) const;
   [[nodiscard]] CapVertex vertex(const Facet& facet, unsigned local) const;
   /// Adds the high parts of a polygon with corners `around`, and the contour's segments in it, against their direction

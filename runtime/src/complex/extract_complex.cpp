@@ -457,21 +457,24 @@ class ComplexWriter {
     write_inside<3>(of.corners.data(), place, static_cast<Index>(first + of.number));
   }
 
-  /// A vertex at a place in the unit cube of dimension K.
+  /// A vertex at a place in the unit cube of dimension K. Corners beyond a seam are taken from the first one's side.
   template <int K>
   void write_inside(const Index* corners, const std::array<double, K>& place, Index number) const noexcept {
     constexpr std::size_t kLast = (std::size_t{1} << K) - 1;
+    const Point& first = complex_.points()[corners[0]];
     Point point{}, gradient{};
     for (std::size_t v = 0; v <= kLast; ++v) {
       double weight = 1.0;
       for (std::size_t a = 0; a < K; ++a) weight *= (v >> a & 1u) != 0 ? place[a] : 1.0 - place[a];
+      const Point corner = near(first, complex_.points()[corners[v]]);
       for (std::size_t i = 0; i < N; ++i) {
-        point[i] += weight * complex_.points()[corners[v]][i];
+        point[i] += weight * corner[i];
         if (gradients_ != nullptr) gradient[i] += weight * gradients_->at(corners[v])[i];
       }
     }
     Vertex& vertex = contour_.vertices[number];
     for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(point[i]);
+    keep_inside(vertex);
     if (is_layered_) keep_between(corners[0], corners[kLast], vertex);
     if (gradients_ != nullptr) contour_.normals[number] = normal_of(gradient);
   }

@@ -15,23 +15,6 @@ namespace {
 
 using CapTriangle = std::array<CapVertex, 3>;
 
-/// Appends a fan. It starts at the corner between two others, if a part has three, otherwise at the one with the
-/// smallest number: both facets at a polygon have the same triangles, whatever the cells.
-void add_fan(std::vector<CapVertex> part, std::vector<CapTriangle>& triangles) {
-  const std::size_t size = part.size();
-  const auto is_corner = [&](std::size_t i) { return part[i % size].is_corner(); };
-  std::size_t corners = 0, start = size;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (!is_corner(i)) continue;
-    ++corners;
-    if (start == size || part[i].number() < part[start].number()) start = i;
-  }
-  for (std::size_t i = 0; corners == 3 && size > 3 && i < size; ++i)
-    if (is_corner(i) && is_corner(i + 1) && is_corner(i + 2)) start = (i + 1) % size;
-  std::rotate(part.begin(), part.begin() + static_cast<std::ptrdiff_t>(start), part.end());
-  for (std::size_t i = 2; i < size; ++i) triangles.push_back({part[0], part[i - 1], part[i]});
-}
-
 }  // namespace
 
 template <int N>
@@ -47,8 +30,7 @@ void ComplexCaps<N>::add_solid(const SolidFacet& facet, const Index* points, std
     for (std::size_t f = 0; f < facet.shape.face_count(); ++f) {
       std::vector<Index> ring;
       for (const std::uint8_t v : facet.shape.ring(f)) ring.push_back(points[facet.corners[v]]);
-      for (std::vector<CapVertex>& part : parts_around(ring))
-        if (!part.empty()) add_fan(std::move(part), triangles);
+      for (std::vector<CapVertex>& part : parts_around(ring)) add_fan(std::move(part), triangles);
     }
     const PolytopeRules rules = rules_of(options_, isovalue_);
     Loops().for_each(facet.shape, at.data(), rules, [&](std::span<const std::uint8_t> loop) {

@@ -230,6 +230,22 @@ double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a
   return growth < 0.0 ? -length : length;
 }
 
+/// Throws InvalidArgument for a length of a seam along a curved axis of which the step across the seam, in the mean of
+/// all rows, is half or more. Single rows may have other steps, as those beside the poles of a tripolar grid.
+template <int N>
+void require_short_step(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, double length) {
+  for (const CurvedAxis& one : curved) {
+    if (one.axis != a || (one.along >> a & 1u) == 0) continue;
+    const double step = length - mean_growth(grid, one, a);
+    if (std::isnan(step) || std::abs(step) < 0.5 * std::abs(length)) continue;
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("the period of {}, a curved axis, is {}, and the step across the seam is {}, in the mean of "
+                    "all rows; expected less than half the period, or a period in the unit of the coordinates",
+                    detail::label_of_axis(grid.axes[a], a), std::abs(length), std::abs(step)));
+  }
+}
+
 }  // namespace
 
 template <int N>
@@ -257,7 +273,9 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
       if (const double growth = mean_growth(grid, one, a); std::isfinite(growth))
         seam.vector[one.axis] = kTurn * std::round(growth / kTurn);
     }
-    if (is_given) seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
+    if (!is_given) continue;
+    seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
+    require_short_step(grid, curved, a, seam.vector[a]);
   }
   return seams;
 }

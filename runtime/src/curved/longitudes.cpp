@@ -190,7 +190,7 @@ class Continued {
   Pieces pieces_;
 };
 
-/// 360, if the first sample follows the last one by a step that is positive and less than half a turn.
+/// 360, if all steps are less than half a turn, and the first sample follows the last one by one that is positive.
 double turn_of(const Axis& axis, int a) {
   constexpr double kTolerance = 1e-3;  // of a step: coordinates in files may be of single precision
   const double length = std::abs(axis[axis.size() - 1] - axis[0]);
@@ -209,6 +209,8 @@ double turn_of(const Axis& axis, int a) {
         fmt::format("but its samples span {}, and the gap behind them is {}; expected less than 180, or a given "
                     "period, such as {}",
                     length, kTurn - length, length + step));
+  if (const std::string reason = detail::too_long_steps(axis, a, kTurn); !reason.empty())
+    throw Error(ErrorCode::InvalidArgument, reason);
   return kTurn;
 }
 

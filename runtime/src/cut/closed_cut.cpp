@@ -56,7 +56,6 @@
 #include "base/periods.hpp"
 #include "base/radix_sort.hpp"
 #include "base/workers.hpp"
-#include "cut/periodic_cut.hpp"
 #include "cut/point_numbers.hpp"
 #include "cut/simplex_cut.hpp"
 #include "cut/slice_piece.hpp"
@@ -187,25 +186,15 @@ class Cutter {
     return !any_on;
   }
 
-  /// The periods of the cut of a wrapped contour. Throws InvalidArgument if the hyperplane crosses one.
+  /// The periods of the cut of a wrapped contour, none of which the hyperplane crosses.
   [[nodiscard]] std::vector<Period<N - 1>> periods_within() const {
     std::vector<Period<N - 1>> result;
     for (const Period<N>& period : contour_.periods) {
       Period<N - 1>& inside = result.emplace_back();
       inside.vector = family_.within(period.vector);
       inside.dual = family_.within(period.dual);
-      if (crosses<N>(family_, period))
-        throw Error(ErrorCode::InvalidArgument,
-                    "cut of a wrapped contour across one of its periods; expected a cut across an axis with one "
-                    "period, a cut along all periods, or an unrolled contour");
-      // the part of <dual, x> that is the same for all points of the cut
-      double along = 0.0;
-      if (!touching_.empty()) {
-        const std::array<double, N> x = widened_point<N>(contour_.vertices[contour_.simplices[touching_[0]][0]]);
-        const std::array<double, N - 1> y = family_.within(x);
-        along = share_of(period, x) - share_of(inside, y);
-      }
-      inside.start = period.start - along;
+      // without the part of <dual, x> that is the same for all points of the cut
+      inside.start = period.start - share_of(period, family_.origin(level_));
     }
     return result;
   }

@@ -31,6 +31,7 @@ class HyperplaneFamily {
     for (int a = 0; a < N; ++a) normal_[a] = std::scalbn(normal[a], -exponent);
     unit_ = is_across_axis_ ? std::abs(normal[frame_.dropped]) : std::scalbn(1.0, exponent);
     is_reversed_ = normal[frame_.dropped] < 0.0;
+    if (is_across_axis_) normal_[frame_.dropped] = sign();
   }
 
   /// The height of the hyperplane <normal, x> = offset, rounded as the heights of vertices.
@@ -53,6 +54,16 @@ class HyperplaneFamily {
     return sum;
   }
 
+  /// Heights are <normal, x>.
+  [[nodiscard]] const Vector<N>& normal() const noexcept { return normal_; }
+  /// The point of the hyperplane at a height that is nearest to 0.
+  [[nodiscard]] Vector<N> origin(double level) const {
+    double square = 0.0;
+    for (const double part : normal_) square += part * part;
+    Vector<N> point;
+    for (int a = 0; a < N; ++a) point[a] = normal_[a] * (level / square);
+    return point;
+  }
   /// The offset of the hyperplane at height 1; heights are offsets divided by it.
   [[nodiscard]] double unit() const noexcept { return unit_; }
 

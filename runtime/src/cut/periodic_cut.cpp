@@ -3,117 +3,40 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "base/periods.hpp"
 #include "base/workers.hpp"
-#include "tegl/slice.hpp"
 
-namespace tegl {
-
-double place_in_period(double place, double first, double period) {
-  if (!std::isfinite(place) || !(period > 0.0) || !std::isfinite(period)) return place;
-  const double moved = place - std::floor((place - first) / period) * period;
-  return moved >= first + period ? first : std::max(moved, first);
-}
-
-template <int N>
-requires DimensionBetween<N, 3, 5>
-bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods, const Hyperplane<N>& hyperplane) {
-  const detail::CrossedPeriods crossed =
-      detail::crossed_periods<N>(detail::HyperplaneFamily<N>(hyperplane.normal), periods);
-  return crossed.count == 0 || crossed.is_modulo;
-}
-
-template <int N>
-requires DimensionBetween<N, 2, 5> std::optional<std::size_t> period_along(
-    std::type_identity_t<std::span<const Vector<N>>> vectors, int axis) {
-  constexpr double kRounding = 1e-9;  // of squares
-  const auto inner = [](const Vector<N>& v, const Vector<N>& w) {
-    double sum = 0.0;
-    for (int a = 0; a < N; ++a) sum += v[a] * w[a];
-    return sum;
-  };
-  std::optional<std::size_t> found;
-  std::vector<Vector<N>> others;  // orthogonal, of length 1
-  const auto take_out_others = [&](Vector<N>& v) {
-    for (const Vector<N>& other : others) {
-      const double share = inner(v, other);
-      for (int a = 0; a < N; ++a) v[a] -= share * other[a];
-    }
-  };
-  for (std::size_t p = 0; p < vectors.size(); ++p) {
-    Vector<N> v = vectors[p];
-    const double length = inner(v, v);
-    if (v[axis] * v[axis] > kRounding * length) {
-      if (found) return std::nullopt;
-      found = p;
-      continue;
-    }
-    take_out_others(v);
-    const double left = inner(v, v);
-    if (!(left > kRounding * length)) continue;
-    for (int a = 0; a < N; ++a) v[a] /= std::sqrt(left);
-    others.push_back(v);
-  }
-  if (!found) return std::nullopt;
-  Vector<N> rest = vectors[*found];
-  const double length = inner(rest, rest);
-  rest[axis] = 0.0;
-  take_out_others(rest);
-  return inner(rest, rest) <= kRounding * length ? found : std::nullopt;
-}
-
-template std::optional<std::size_t> period_along<2>(std::span<const Vector<2>>, int);
-template std::optional<std::size_t> period_along<3>(std::span<const Vector<3>>, int);
-template std::optional<std::size_t> period_along<4>(std::span<const Vector<4>>, int);
-template std::optional<std::size_t> period_along<5>(std::span<const Vector<5>>, int);
-
-template bool cuts_wrapped<3>(std::span<const Period<3>>, const Hyperplane<3>&);
-template bool cuts_wrapped<4>(std::span<const Period<4>>, const Hyperplane<4>&);
-template bool cuts_wrapped<5>(std::span<const Period<5>>, const Hyperplane<5>&);
-
-namespace detail {
-
-template <int N>
-double place_modulo(const HyperplaneFamily<N>& family, const Period<N>& period, double offset) {
-  const double along = period.vector[family.dropped_axis()];
-  const double start =
-      period.start * along;  // <dual, x> = start here, if the dual vector has the direction of the axis
-  return place_in_period(family.sign() * family.template level<double>(offset), std::min(start, start + along),
-                         std::abs(along));
-}
-
-template double place_modulo(const HyperplaneFamily<3>&, const Period<3>&, double);
-template double place_modulo(const HyperplaneFamily<4>&, const Period<4>&, double);
-template double place_modulo(const HyperplaneFamily<5>&, const Period<5>&, double);
-
+namespace tegl::detail {
 namespace {
 
 template <int N, class Real>
 class Mover {
  public:
-  Mover(const Contour<N, Real>& contour, std::size_t period, int axis, std::span<const double> places,
-        const WorkOptions& work)
-      : contour_(contour),
-        period_(contour.periods[period]),
-        axis_(axis),
-        places_(places),
-        work_(work),
-        shares_(contour.vertices.size()) {}
+  Mover(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed,
+        std::span<const double> levels, const WorkOptions& work)
+      : contour_(contour), family_(family), crossed_(crossed), levels_(levels), work_(work) {
+    for (std::size_t p = 0; p < contour.periods.size(); ++p)
+      if (crossed.times[p] != 0.0) counted_.push_back({contour.periods[p], crossed.times[p]});
+    shares_.resize(contour.vertices.size() * counted_.size());
+  }
 
-  Contour<N, Real> run(std::size_t period) {
-    for_each_item(shares_.size(), work_.threads, {},
-                  [&](std::size_t v) { shares_[v] = share_of(period_, widened_point<N>(contour_.vertices[v])); });
+  Contour<N, Real> run() {
+    require_near();
+    find_shares();
     find_simplices();
     number_vertices();
     Contour<N, Real> result = moved();
-    result.periods = contour_.periods;
-    result.periods.erase(result.periods.begin() + static_cast<std::ptrdiff_t>(period));
+    result.periods = crossed_.within;
     return result;
   }
 
@@ -126,62 +49,150 @@ class Mover {
   };
 
   static constexpr std::int64_t kZero = std::int64_t{1} << 31;  ///< the lower half of the key of a vertex that stays
-  static constexpr std::size_t kBlock = std::size_t{1} << 14;   ///< simplices of a part of the work
+  static constexpr double kFarthest = 1 << 29;  ///< periods to vertices and levels, so that keys have room
+  static constexpr double kLongest = 128;       ///< periods that a simplex reaches over, to bound the work for it
+  static constexpr std::size_t kBlock = std::size_t{1} << 14;  ///< simplices of a part of the work
 
   static Key key_of(Index vertex, std::int64_t times) { return Key{vertex} << 32 | static_cast<Key>(times + kZero); }
   static Index vertex_of(Key key) { return static_cast<Index>(key >> 32); }
   static double times_of(Key key) { return static_cast<double>(static_cast<std::int64_t>(key & 0xffffffffu) - kZero); }
-  /// Contours whose coordinates are far from their periods are not sound, but must not overflow.
-  static std::int64_t whole(double times) {
-    constexpr double kMost = 1 << 29;
-    return static_cast<std::int64_t>(std::clamp(times, -kMost, kMost));
+  /// A vertex that is moved.
+  [[nodiscard]] Vertex moved_vertex(Index v, double times) const {
+    Vertex x = contour_.vertices[v];
+    if (times == 0.0) return x;
+    for (int a = 0; a < N; ++a) x[a] = static_cast<Real>(static_cast<double>(x[a]) + times * crossed_.across.vector[a]);
+    return x;
   }
 
-  /// The coordinate along `axis` of a vertex that is moved.
-  [[nodiscard]] Real coordinate(Index v, double times, int axis) const {
-    const Real x = contour_.vertices[v][axis];
-    return times == 0.0 ? x : static_cast<Real>(static_cast<double>(x) + times * period_.vector[axis]);
+  /// The height of a vertex that is moved.
+  [[nodiscard]] double height_at(Index v, double times) const {
+    if (times == 0.0) return family_.height(contour_.vertices[v]);
+    if (!family_.is_across_axis()) return family_.height(moved_vertex(v, times));
+    const int a = family_.dropped_axis();
+    const double x = static_cast<double>(contour_.vertices[v][a]) + times * crossed_.across.vector[a];
+    return family_.sign() * static_cast<double>(static_cast<Real>(x));
+  }
+
+  [[nodiscard]] bool is_near(double height) const {
+    return std::abs(height / crossed_.height - crossed_.across.start) <= kFarthest;
+  }
+
+  /// Throws InvalidArgument if levels or vertices are so far from the period that moves would have no keys.
+  void require_near() const {
+    const auto fail = [&](const std::string& what, double height) {
+      const bool is_place = family_.is_across_axis();
+      const double sign = is_place ? family_.sign() : 1.0;
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("{} {}, with the period {} from {}; expected at most {} periods from there", what,
+                      is_place ? fmt::format("the coordinate {} along axis {}", sign * height, family_.dropped_axis())
+                               : fmt::format("the height {} over the hyperplane through 0", height),
+                      std::abs(crossed_.height), sign * crossed_.across.start * crossed_.height, kFarthest));
+    };
+    for (const double level : levels_)
+      if (!is_near(level)) fail("a cut across a period has", level);
+    std::atomic<bool> are_near = true;
+    for_each_item(contour_.vertices.size(), work_.threads, {}, [&](std::size_t v) {
+      if (!is_near(family_.height(contour_.vertices[v]))) are_near = false;
+    });
+    if (are_near) return;
+    for (std::size_t v = 0; v < contour_.vertices.size(); ++v)
+      if (const double height = family_.height(contour_.vertices[v]); !is_near(height))
+        fail(fmt::format("vertex {} has", v), height);
+  }
+
+  /// By the dual vectors if the basis is another one; otherwise by height, which does not depend on them.
+  void find_shares() {
+    const std::size_t count = counted_.size();
+    for_each_item(contour_.vertices.size(), work_.threads, {}, [&](std::size_t v) {
+      if (!crossed_.is_other) {
+        shares_[v] = family_.height(contour_.vertices[v]) / crossed_.height;
+        return;
+      }
+      const std::array<double, N> x = widened_point<N>(contour_.vertices[v]);
+      for (std::size_t i = 0; i < count; ++i) shares_[v * count + i] = share_of(counted_[i].period, x);
+    });
   }
 
   void find_simplices() {
     const std::size_t count = contour_.simplices.size();
     std::vector<std::vector<Found>> parts(block_count(count, kBlock));
+    std::atomic<bool> are_short = true;
     for_each_block(count, kBlock, work_.threads, work_.progress,
                    [&](std::size_t block, std::size_t from, std::size_t to) {
-                     for (std::size_t s = from; s < to; ++s) find_moves(s, parts[block]);
+                     for (std::size_t s = from; s < to; ++s)
+                       if (!find_moves(s, parts[block])) are_short = false;
                    });
+    if (!are_short)
+      throw Error(ErrorCode::InvalidArgument,
+                  "cut of a wrapped contour along a sum of its periods, with simplices of half of it or more; expected "
+                  "shorter ones, or an unrolled contour");
     for (const std::vector<Found>& part : parts) found_.insert(found_.end(), part.begin(), part.end());
   }
 
-  /// Appends the simplex once for each multiple of the period by which it touches a place.
-  void find_moves(std::size_t s, std::vector<Found>& found) const {
+  /// How many times the period across is between the places of two vertices next to each other.
+  [[nodiscard]] double times_apart(Index from, Index v) const {
+    double times = 0.0;
+    const std::size_t count = counted_.size();
+    for (std::size_t i = 0; i < count; ++i)
+      times += counted_[i].times * std::round(shares_[from * count + i] - shares_[v * count + i]);
+    return times;
+  }
+
+  /// Whether the corners of a simplex differ by less than half of each period of the result.
+  [[nodiscard]] bool is_short(std::size_t s) const {
     const auto& simplex = contour_.simplices[s];
-    std::array<std::int64_t, N> apart;  // by corner: the periods to the place next to corner 0
-    double low = std::numeric_limits<double>::infinity(), high = -low;
+    std::array<std::array<double, N>, N> corners;
     for (int j = 0; j < N; ++j) {
-      apart[j] = whole(std::round(shares_[simplex[0]] - shares_[simplex[j]]));
-      const auto x = static_cast<double>(coordinate(simplex[j], static_cast<double>(apart[j]), axis_));
-      low = std::min(low, x);
-      high = std::max(high, x);
+      corners[j] = widened_point<N>(contour_.vertices[simplex[j]]);
+      move_near<N>(contour_.periods, corners[0], corners[j]);
     }
-    // one more at both ends, as coordinates are rounded
-    const double along = period_.vector[axis_];
-    const auto [from, to] = std::minmax({(places_.front() - high) / along, (places_.front() - low) / along,
-                                         (places_.back() - high) / along, (places_.back() - low) / along});
-    const std::int64_t last = whole(std::floor(to)) + 1;
-    for (std::int64_t times = whole(std::ceil(from)) - 1; times <= last; ++times) {
-      low = std::numeric_limits<double>::infinity();
-      high = -low;
-      for (int j = 0; j < N; ++j) {
-        const auto x = static_cast<double>(coordinate(simplex[j], static_cast<double>(times + apart[j]), axis_));
-        low = std::min(low, x);
-        high = std::max(high, x);
+    for (const Period<N>& period : crossed_.within) {
+      double least = std::numeric_limits<double>::infinity(), most = -least;
+      for (const auto& corner : corners) {
+        const double share = share_of(period, corner);
+        least = std::min(least, share);
+        most = std::max(most, share);
       }
-      const auto place = std::lower_bound(places_.begin(), places_.end(), low);
-      if (place == places_.end() || *place > high) continue;
-      Found& one = found.emplace_back(Found{static_cast<Index>(s), {}});
-      for (int j = 0; j < N; ++j) one.corners[j] = key_of(simplex[j], times + apart[j]);
+      if (!(most - least < 0.5)) return false;
     }
+    return true;
+  }
+
+  /// Appends the simplex once for each multiple of the period by which it touches a level. Returns false if it is too
+  /// long for cuts.
+  [[nodiscard]] bool find_moves(std::size_t s, std::vector<Found>& found) const {
+    const auto& simplex = contour_.simplices[s];
+    std::array<double, N> apart;  // by corner: the periods to the place next to corner 0
+    const auto range_at = [&](double times) {
+      double low = std::numeric_limits<double>::infinity(), high = -low;
+      for (int j = 0; j < N; ++j) {
+        const double height = height_at(simplex[j], times + apart[j]);
+        low = std::min(low, height);
+        high = std::max(high, height);
+      }
+      return std::pair(low, high);
+    };
+    for (int j = 0; j < N; ++j) apart[j] = times_apart(simplex[0], simplex[j]);
+    const auto [lowest, highest] = range_at(0.0);
+    const double along = crossed_.height;
+    if (!(highest - lowest <= kLongest * std::abs(along))) return false;
+    const auto [from, to] = std::minmax({(levels_.front() - highest) / along, (levels_.front() - lowest) / along,
+                                         (levels_.back() - highest) / along, (levels_.back() - lowest) / along});
+    // more at both ends, as coordinates are rounded: one across several axes
+    const double largest =
+        std::max({std::abs(lowest), std::abs(highest), std::abs(levels_.front()), std::abs(levels_.back())});
+    constexpr double kCoordinates = 16 * static_cast<double>(std::numeric_limits<Real>::epsilon());
+    const double more = family_.is_across_axis() ? kCoordinates * largest / std::abs(along) : 1.0;
+    const std::size_t before = found.size();
+    for (double times = std::ceil(from - more), last = std::floor(to + more); times <= last; ++times) {
+      const auto [low, high] = range_at(times);
+      const auto level = std::lower_bound(levels_.begin(), levels_.end(), low);
+      if (level == levels_.end() || *level > high) continue;
+      Found& one = found.emplace_back(Found{static_cast<Index>(s), {}});
+      for (int j = 0; j < N; ++j) one.corners[j] = key_of(simplex[j], static_cast<std::int64_t>(times + apart[j]));
+    }
+    return !crossed_.is_other || found.size() == before || is_short(s);
   }
 
   void number_vertices() {
@@ -202,9 +213,8 @@ class Mover {
     result.direction = contour_.direction;
     result.vertices.resize(keys_.size());
     result.simplices.resize(found_.size());
-    for_each_item(keys_.size(), work_.threads, {}, [&](std::size_t i) {
-      for (int a = 0; a < N; ++a) result.vertices[i][a] = coordinate(vertex_of(keys_[i]), times_of(keys_[i]), a);
-    });
+    for_each_item(keys_.size(), work_.threads, {},
+                  [&](std::size_t i) { result.vertices[i] = moved_vertex(vertex_of(keys_[i]), times_of(keys_[i])); });
     for_each_item(found_.size(), work_.threads, {}, [&](std::size_t i) {
       for (int j = 0; j < N; ++j)
         result.simplices[i][j] =
@@ -230,12 +240,19 @@ class Mover {
     return result;
   }
 
+  /// A period of the contour that the hyperplanes cross.
+  struct Counted {
+    Period<N> period;
+    double times;  ///< how many times `crossed_.across` is in it
+  };
+
   const Contour<N, Real>& contour_;
-  const Period<N>& period_;
-  const int axis_;
-  const std::span<const double> places_;
+  const HyperplaneFamily<N>& family_;
+  const CrossedPeriods<N>& crossed_;
+  const std::span<const double> levels_;
   const WorkOptions& work_;
-  Buffer<double> shares_;
+  std::vector<Counted> counted_;
+  Buffer<double> shares_;  ///< of each vertex, by counted_
   std::vector<Found> found_;
   std::vector<Key> keys_;  ///< of the vertices of the result, ascending
 };
@@ -243,14 +260,15 @@ class Mover {
 }  // namespace
 
 template <int N, class Real>
-Contour<N, Real> moved_to_places(const Contour<N, Real>& contour, std::size_t period, int axis,
-                                 std::span<const double> places, const WorkOptions& work) {
-  return Mover<N, Real>(contour, period, axis, places, work).run(period);
+Contour<N, Real> moved_to_levels(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family,
+                                 const CrossedPeriods<N>& crossed, std::span<const double> levels,
+                                 const WorkOptions& work) {
+  return Mover<N, Real>(contour, family, crossed, levels, work).run();
 }
 
-#define TEGL_INSTANTIATE_MOVED(N, Real)                                                                         \
-  template Contour<N, Real> moved_to_places(const Contour<N, Real>&, std::size_t, int, std::span<const double>, \
-                                            const WorkOptions&);
+#define TEGL_INSTANTIATE_MOVED(N, Real)                                                          \
+  template Contour<N, Real> moved_to_levels(const Contour<N, Real>&, const HyperplaneFamily<N>&, \
+                                            const CrossedPeriods<N>&, std::span<const double>, const WorkOptions&);
 TEGL_INSTANTIATE_MOVED(3, float)
 TEGL_INSTANTIATE_MOVED(3, double)
 TEGL_INSTANTIATE_MOVED(4, float)
@@ -259,5 +277,4 @@ TEGL_INSTANTIATE_MOVED(5, float)
 TEGL_INSTANTIATE_MOVED(5, double)
 #undef TEGL_INSTANTIATE_MOVED
 
-}  // namespace detail
-}  // namespace tegl
+}  // namespace tegl::detail

@@ -12,6 +12,8 @@
 #include "base/progress.hpp"
 #include "base/workers.hpp"
 #include "cut/closed_cut.hpp"
+#include "cut/crossed_periods.hpp"
+#include "cut/each_cut.hpp"
 #include "cut/periodic_cut.hpp"
 #include "cut/vertex_range.hpp"
 #include "mesh/validate.hpp"
@@ -186,18 +188,34 @@ TouchingSimplices touching_levels(const Contour<N, Real>& contour, const Hyperpl
   return touching;
 }
 
-/// The place of a hyperplane across a periodic axis, as place_modulo, rounded as the vertices.
-template <class Real, int N>
-double place_on_axis(const HyperplaneFamily<N>& family, const Period<N>& period, double offset) {
-  return static_cast<double>(detail::rounded_at<Real>(detail::place_modulo(family, period, offset)));
+/// The periods that hyperplanes cross. Throws InvalidArgument if wrapped contours have no such cuts.
+template <int N>
+detail::CrossedPeriods<N> periods_to_cut(const HyperplaneFamily<N>& family, std::span<const Period<N>> periods) {
+  detail::CrossedPeriods<N> crossed = detail::crossed_periods<N>(family, periods);
+  if (!crossed.has_cuts)
+    throw Error(ErrorCode::InvalidArgument,
+                "cut of a wrapped contour across one of its periods, along which it does not repeat itself; expected a "
+                "hyperplane for which cuts_wrapped is true, or an unrolled contour");
+  return crossed;
 }
 
-/// The hyperplane at a place across the axis of a family, with its direction.
-template <int N>
-Hyperplane<N> across_axis(const HyperplaneFamily<N>& family, double place) {
-  Hyperplane<N> hyperplane = Hyperplane<N>::across(family.dropped_axis(), family.sign() * place);
-  hyperplane.normal[family.dropped_axis()] = family.sign();
-  return hyperplane;
+/// The height of the hyperplane <normal, x> = offset, rounded as the vertices. If cuts at places a period apart are
+/// equal, it is that of the place in the period, so that they are equal bit by bit.
+template <class Real, int N>
+double level_of(const HyperplaneFamily<N>& family, const detail::CrossedPeriods<N>& crossed, double offset) {
+  if (!crossed.any || !crossed.is_straight) return family.template level<Real>(offset);
+  return family.sign() * static_cast<double>(detail::rounded_at<Real>(detail::place_modulo(family, crossed, offset)));
+}
+
+/// Cuts a contour none of whose periods the hyperplane crosses.
+template <int N, class Real>
+Contour<N - 1, Real> cut_at(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family, double level,
+                            const WorkOptions& work) {
+  const VertexSides sides(contour, family, level, {work.threads, detail::part_of(work.progress, 0.0, 0.4)});
+  detail::require_attributes(contour);
+  const Progress finding = detail::part_of(work.progress, 0.4, 0.8);
+  return detail::cut_simplices(contour, family, level, touching_simplices(contour, sides, {work.threads, finding}),
+                               work.threads, sides.by_vertex());
 }
 
 /// The hyperplanes of a stack that have the same normal.
@@ -205,13 +223,13 @@ template <int N, class Real>
 struct Parallels {
   Vector<N> normal;
   HyperplaneFamily<N> family;
-  detail::CrossedPeriods crossed;
+  detail::CrossedPeriods<N> crossed;
   std::vector<double> levels;  ///< ascending, each once
   TouchingSimplices touching;
-  Contour<N, Real> moved;  ///< if they are modulo a period, the simplices that touch them
+  Contour<N, Real> moved;  ///< if they cross a period, the simplices that touch them
 
   [[nodiscard]] const Contour<N, Real>& of(const Contour<N, Real>& contour) const {
-    return crossed.is_modulo ? moved : contour;
+    return crossed.any ? moved : contour;
   }
 };
 
@@ -231,14 +249,9 @@ std::vector<StackedCut> group_by_normal(const Contour<N, Real>& contour, std::sp
                               [&](const Parallels<N, Real>& other) { return other.normal == hyperplane.normal; });
     if (group == groups.end()) {
       const HyperplaneFamily<N> family(hyperplane.normal);
-      group = groups.insert(
-          group, {hyperplane.normal, family, detail::crossed_periods<N>(family, contour.periods), {}, {}, {}});
+      group = groups.insert(group, {hyperplane.normal, family, periods_to_cut<N>(family, contour.periods), {}, {}, {}});
     }
-    const HyperplaneFamily<N>& family = group->family;
-    const double level =
-        group->crossed.is_modulo
-            ? family.sign() * place_on_axis<Real>(family, contour.periods[group->crossed.period], hyperplane.offset)
-            : family.template level<Real>(hyperplane.offset);
+    const double level = level_of<Real>(group->family, group->crossed, hyperplane.offset);
     group->levels.push_back(level);
     stack.push_back({static_cast<std::size_t>(group - groups.begin()), level});
   }
@@ -247,16 +260,6 @@ std::vector<StackedCut> group_by_normal(const Contour<N, Real>& contour, std::sp
     group.levels.erase(std::unique(group.levels.begin(), group.levels.end()), group.levels.end());
   }
   return stack;
-}
-
-/// Finds the simplices that touch hyperplanes modulo a period.
-template <int N, class Real>
-void move_to_levels(const Contour<N, Real>& contour, Parallels<N, Real>& group, unsigned threads) {
-  std::vector<double> places;
-  for (const double level : group.levels) places.push_back(group.family.sign() * level);
-  std::sort(places.begin(), places.end());
-  group.moved = detail::moved_to_places(contour, group.crossed.period, group.family.dropped_axis(),
-                                        std::span<const double>(places), {threads, {}});
 }
 
 constexpr const char* kCancelledSlice = "cuts cancelled";
@@ -268,21 +271,17 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const Hyperplane<N>& hyperplane,
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
-  if (const detail::CrossedPeriods crossed = detail::crossed_periods<N>(family, contour.periods); crossed.is_modulo) {
+  const detail::CrossedPeriods<N> crossed = periods_to_cut<N>(family, contour.periods);
+  const double level = level_of<Real>(family, crossed, hyperplane.offset);
+  Contour<N - 1, Real> cut;
+  if (crossed.any) {
     detail::require_sound(contour);
-    const std::vector<double> places = {
-        place_on_axis<Real>(family, contour.periods[crossed.period], hyperplane.offset)};
-    return slice(detail::moved_to_places(contour, crossed.period, family.dropped_axis(), places,
+    cut = cut_at(detail::moved_to_levels(contour, family, crossed, std::span(&level, 1),
                                          {work.threads, detail::part_of(work.progress, 0.0, 0.6)}),
-                 across_axis<N>(family, places[0]), {work.threads, detail::part_of(work.progress, 0.6, 1.0)});
+                 family, level, {work.threads, detail::part_of(work.progress, 0.6, 1.0)});
+  } else {
+    cut = cut_at(contour, family, level, work);
   }
-  const double level = family.template level<Real>(hyperplane.offset);
-  const VertexSides sides(contour, family, level, {work.threads, detail::part_of(work.progress, 0.0, 0.4)});
-  detail::require_attributes(contour);
-  const Progress finding = detail::part_of(work.progress, 0.4, 0.8);
-  Contour<N - 1, Real> cut =
-      detail::cut_simplices(contour, family, level, touching_simplices(contour, sides, {work.threads, finding}),
-                            work.threads, sides.by_vertex());
   detail::tell(work.progress, 1.0, kCancelledSlice);
   return cut;
 }
@@ -298,7 +297,11 @@ requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack
   // one pass over the contour for each normal
   for (std::size_t i = 0; i < groups.size(); ++i) {
     detail::tell(work.progress, static_cast<double>(i) / steps, kCancelledSlice);
-    if (groups[i].crossed.is_modulo) move_to_levels(contour, groups[i], work.threads);
+    if (groups[i].crossed.any)
+      groups[i].moved = detail::moved_to_levels<N, Real>(
+          contour, groups[i].family, groups[i].crossed, groups[i].levels,
+          {work.threads,
+           detail::part_of(work.progress, static_cast<double>(i) / steps, static_cast<double>(i + 1) / steps)});
     groups[i].touching = touching_levels(groups[i].of(contour), groups[i].family, groups[i].levels, work.threads);
   }
   const auto cut_of = [&](const StackedCut& cut) {
@@ -322,10 +325,53 @@ requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack
   return cuts;
 }
 
+template <int N, class Real>
+void detail::for_each_cut(const Contour<N, Real>& contour, std::span<const double> at, const WorkOptions& work,
+                          UseCut<N, Real> use) {
+  constexpr std::size_t kTogether = 256;  // levels whose simplices are listed at a time
+  std::vector<Hyperplane<N>> hyperplanes;
+  for (const double t : at) hyperplanes.push_back(Hyperplane<N>::across(N - 1, t));
+  std::vector<Parallels<N, Real>> groups;
+  const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, groups);
+  detail::require_sound(contour);
+  if (groups.empty()) return;
+  Parallels<N, Real>& group = groups.front();
+  const std::vector<double>& all = group.levels;
+  std::vector<std::vector<std::size_t>> places(all.size());
+  for (std::size_t i = 0; i < stack.size(); ++i)
+    places[static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), stack[i].level) - all.begin())].push_back(
+        i);
+  if (group.crossed.any)
+    group.moved = detail::moved_to_levels<N, Real>(contour, group.family, group.crossed, group.levels,
+                                                   {work.threads, detail::part_of(work.progress, 0.0, 0.1)});
+  detail::tell(work.progress, 0.1, kCancelledSlice);
+  const Contour<N, Real>& moved = group.of(contour);
+  struct Nothing {};
+  const std::size_t threads = detail::Workers<Nothing>(work.threads, [] { return Nothing(); }).count();
+  for (std::size_t first = 0; first < all.size(); first += kTogether) {
+    const std::size_t count = std::min(all.size() - first, kTogether);
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    const TouchingSimplices touching =
+        touching_levels(moved, group.family, {begin, begin + static_cast<std::ptrdiff_t>(count)}, work.threads);
+    const auto done = [&](std::size_t i) {
+      return 0.1 + 0.9 * static_cast<double>(i) / static_cast<double>(all.size());
+    };
+    const unsigned inside = count < threads ? work.threads : 1;
+    detail::for_each_block(
+        count, 1, count < threads ? 1 : work.threads, detail::part_of(work.progress, done(first), done(first + count)),
+        [&](std::size_t i, std::size_t, std::size_t) {
+          use(places[first + i], detail::cut_simplices(moved, group.family, all[first + i], touching.of(i), inside),
+              inside);
+        });
+  }
+}
+
 #define TEGL_INSTANTIATE_SLICE(N, Real)                                                                           \
   template Contour<N - 1, Real> slice(const Contour<N, Real>&, const Hyperplane<N>&, const WorkOptions&);         \
   template std::vector<Contour<N - 1, Real>> slice_stack(const Contour<N, Real>&, std::span<const Hyperplane<N>>, \
-                                                         const WorkOptions&);
+                                                         const WorkOptions&);                                     \
+  template void detail::for_each_cut(const Contour<N, Real>&, std::span<const double>, const WorkOptions&,        \
+                                     UseCut<N, Real>);
 TEGL_INSTANTIATE_SLICE(3, float)
 TEGL_INSTANTIATE_SLICE(3, double)
 TEGL_INSTANTIATE_SLICE(4, float)

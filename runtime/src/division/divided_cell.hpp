@@ -44,6 +44,18 @@ inline double mean_of_corners(std::span<const double> values) noexcept {
   return std::clamp(sum, *least, *most);
 }
 
+/// The gradient at a point of a divided cell: the mean of the corners' gradients, of_corner(mask of axes).
+template <int N, class OfCorner>
+std::array<double, N> mean_gradient(FacePoint point, const OfCorner& of_corner) {
+  const std::vector<unsigned> corners = corner_masks(point);
+  std::array<double, N> mean{};
+  for (const unsigned corner : corners) {
+    const std::array<double, N> gradient = of_corner(corner);
+    for (int a = 0; a < N; ++a) mean[a] += gradient[a] / static_cast<double>(corners.size());
+  }
+  return mean;
+}
+
 /// Calls visit(facet) for the facets of a face.
 template <class Visit>
 void for_each_facet(FacePoint face, const Visit& visit) {

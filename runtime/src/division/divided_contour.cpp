@@ -405,11 +405,9 @@ class DividedExtraction {
     std::array<double, N> gradient{};
     const auto add = [&](const CellPoint& point, double share) {
       if (share == 0.0) return;
-      const std::vector<unsigned> corners = corner_masks(point.face);
-      for (const unsigned corner : corners) {
-        const std::array<double, N> there = normals.in_world_at(corner_at(at, corner));
-        for (int a = 0; a < N; ++a) gradient[a] += share / static_cast<double>(corners.size()) * there[a];
-      }
+      const auto mean =
+          mean_gradient<N>(point.face, [&](unsigned corner) { return normals.in_world_at(corner_at(at, corner)); });
+      for (int a = 0; a < N; ++a) gradient[a] += share * mean[a];
     };
     add(first, 1.0 - alpha);
     add(second, alpha);

@@ -286,23 +286,6 @@ void require_division(Division division, int dim) {
                 fmt::format("division {} of a {}D image; expected kuhn or symmetric", name_of(division), dim));
 }
 
-/// Throws InvalidArgument for steps of half a period or more: complexes place the corners of a cell nearest to each
-/// other.
-template <int N>
-void require_short_steps(const Grid<N>& grid, const AxisPeriods<N>& periods) {
-  for (int a = 0; a < N; ++a) {
-    if (periods[a] == 0.0) continue;
-    const Axis longer = detail::wrapped_axis(grid.axes[a], periods[a], 0, 1);
-    for (std::size_t i = 1; i < longer.size(); ++i)
-      if (const double step = std::abs(longer[i] - longer[i - 1]); !(step < 0.5 * periods[a]))
-        throw Error(
-            ErrorCode::InvalidArgument,
-            fmt::format("a divided image: {} has a step of {}, from {} to {}, and the period {}; expected steps "
-                        "of less than half the period",
-                        detail::label_of_axis(grid.axes[a], a), step, longer[i - 1], longer[i], periods[a]));
-  }
-}
-
 }  // namespace
 
 namespace detail {
@@ -321,7 +304,6 @@ void check_division_arguments(const Grid<N>& grid, Division division, double iso
   if (options.normals == Normals::kernel) (void)line_kernel_of<N>(options.kernel);
   if (!any_periodic<N>(periods)) return;
   check_periods<N>(grid, periods, options);
-  if constexpr (N <= 4) require_short_steps<N>(grid, periods);
   for (int a = 0; a < N; ++a)
     if (division == Division::alternating && periods[a] != 0.0 && grid.axes[a].size() % 2 != 0)
       throw Error(ErrorCode::InvalidArgument,

@@ -121,15 +121,12 @@ class StoredDivision {
   [[nodiscard]] Gradient gradient(Index p) const {
     if (p < samples_) return at_sample(index_of<N>(p, sizes_));
     const auto& [axes, lowest] = made_.centres[p - samples_];
-    const std::vector<unsigned> corners = corner_masks({0, axes});
-    Gradient mean{};
-    for (const unsigned corner : corners) {
-      Sample index = index_of<N>(lowest, sizes_);
+    const Sample first = index_of<N>(lowest, sizes_);
+    return mean_gradient<N>({0, axes}, [&](unsigned corner) {
+      Sample index = first;
       for (int a = 0; a < N; ++a) index[a] += corner >> a & 1u;
-      const Gradient of_corner = at_sample(index);
-      for (int a = 0; a < N; ++a) mean[a] += of_corner[a] / static_cast<double>(corners.size());
-    }
-    return mean;
+      return at_sample(index);
+    });
   }
 
   Sample sizes_;

@@ -14,6 +14,7 @@
 
 #include "image/cube_heights.hpp"
 #include "image/ray_level.hpp"
+#include "image/rays_of_tiles.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/many_rays.cpp"
@@ -165,10 +166,18 @@ struct LevelsInside {
   }
 };
 
+/// The level of a ray on which the interpolant has the root `level`, or -1 if it has none.
+HWY_INLINE RayLanes level_of_root(const RayPolynomials<5>& polynomials, RayLanes level, const LevelsInside& inside) {
+  const RayTag d;
+  const auto one = hn::Set(d, 1.0);
+  const auto is_nearer = hn::Lt(hn::Abs(polynomials.value(one)), hn::Abs(polynomials.of[0]));
+  return inside(hn::IfThenElse(hn::Lt(level, hn::Zero(d)), hn::IfThenElseZero(is_nearer, one), level));
+}
+
 void levels_of_tesseract(const std::array<double, 16>& products, double epsilon, TesseractRays& rays) {
   const RayTag d;
   const std::size_t lanes = hn::Lanes(d);
-  const auto one = hn::Set(d, 1.0), two = hn::Set(d, 2.0), zero = hn::Zero(d);
+  const auto one = hn::Set(d, 1.0), two = hn::Set(d, 2.0);
   const LevelsInside inside(epsilon);
   const std::size_t end = (rays.count + lanes - 1) / lanes * lanes;
   const std::size_t last = end - lanes;  // the register that may not be full; there is at least one ray
@@ -181,11 +190,8 @@ void levels_of_tesseract(const std::array<double, 16>& products, double epsilon,
     return tesseract_polynomials(products, u);
   };
   const auto wanted_at = [&](std::size_t i) HWY_ATTR { return hn::FirstN(d, rays.count - i); };
-  const auto store = [&](std::size_t i, const RayPolynomials<5>& polynomials, RayLanes level) HWY_ATTR {
-    const auto is_nearer = hn::Lt(hn::Abs(polynomials.value(one)), hn::Abs(polynomials.of[0]));
-    level = hn::IfThenElse(hn::Lt(level, zero), hn::IfThenElseZero(is_nearer, one), level);
-    hn::Store(inside(level), d, rays.levels.data() + i);
-  };
+  const auto store = [&](std::size_t i, const RayPolynomials<5>& polynomials, RayLanes root)
+                         HWY_ATTR { hn::Store(level_of_root(polynomials, root, inside), d, rays.levels.data() + i); };
   std::size_t i = 0;
   for (; i + lanes < end; i += 2 * lanes) {
     const std::array<RayPolynomials<5>, 2> polynomials = {polynomials_at(i), polynomials_at(i + lanes)};
@@ -198,22 +204,66 @@ void levels_of_tesseract(const std::array<double, 16>& products, double epsilon,
   store(i, polynomials, last_roots(polynomials, wanted_at(i)));
 }
 
-void points_on_rays(const TileBox& box, TesseractRays& rays) {
+static_assert(TesseractRays::kMost <= RaysOfTiles::kMost);
+
+/// A register of rays of one tile.
+struct RayRegister {
+  const RaysOfTiles::Tile* tile;
+  std::size_t at;      ///< place of the first ray
+  std::size_t wanted;  ///< lanes with a ray
+};
+
+HWY_INLINE RayPolynomials<5> polynomials_on(const RaysOfTiles& rays, const RayRegister& of) {
   const RayTag d;
-  const auto half = hn::Set(d, 0.5), one = hn::Set(d, 1.0);
+  RayLanes u[4];
+  for (std::size_t a = 0; a < 4; ++a)
+    u[a] = hn::Sub(hn::Mul(hn::Set(d, 2.0), hn::Load(d, rays.ends[a].data() + of.at)), hn::Set(d, 1.0));
+  return tesseract_polynomials(of.tile->products, u);
+}
+
+/// The coordinate along one axis of points at `level` on rays to `end`, in a box.
+HWY_INLINE RayLanes coordinate_on(RayLanes end, RayLanes level, double box_from, double box_to) {
+  const RayTag d;
+  const auto half = hn::Set(d, 0.5), from = hn::Set(d, box_from), to = hn::Set(d, box_to), step = hn::Sub(to, from);
+  const auto least = hn::Set(d, std::min(box_from, box_to)), most = hn::Set(d, std::max(box_from, box_to));
+  const auto x = hn::Add(half, hn::Mul(level, hn::Sub(end, half)));
+  auto point = hn::Add(from, hn::Mul(x, step));
+  point = hn::IfThenElse(hn::Gt(least, point), least, point);
+  point = hn::IfThenElse(hn::Gt(point, most), most, point);
+  return hn::IfThenElse(hn::Ge(x, hn::Set(d, 1.0)), to, point);
+}
+
+HWY_INLINE void store_points(RaysOfTiles& rays, const RayRegister& of, RayLanes level) {
+  const RayTag d;
+  if (!is_finite_enough(of.tile->products[0])) level = hn::Set(d, 0.5);
   for (std::size_t a = 0; a < 4; ++a) {
-    const auto from = hn::Set(d, box.from[a]), to = hn::Set(d, box.to[a]), step = hn::Sub(to, from);
-    const auto least = hn::Set(d, std::min(box.from[a], box.to[a])),
-               most = hn::Set(d, std::max(box.from[a], box.to[a]));
-    for (std::size_t i = 0; i < rays.count; i += hn::Lanes(d)) {
-      double* const at = rays.ends[a].data() + i;
-      const auto x = hn::Add(half, hn::Mul(hn::Load(d, rays.levels.data() + i), hn::Sub(hn::Load(d, at), half)));
-      auto point = hn::Add(from, hn::Mul(x, step));
-      point = hn::IfThenElse(hn::Gt(least, point), least, point);
-      point = hn::IfThenElse(hn::Gt(point, most), most, point);
-      hn::Store(hn::IfThenElse(hn::Ge(x, one), to, point), d, at);
-    }
+    double* const end = rays.ends[a].data() + of.at;
+    hn::Store(coordinate_on(hn::Load(d, end), level, of.tile->box.from[a], of.tile->box.to[a]), d, end);
   }
+}
+
+template <std::size_t... I>
+HWY_INLINE void place_registers(RaysOfTiles& rays, const RayRegister* of, const LevelsInside& inside,
+                                std::index_sequence<I...>) {
+  const RayPolynomials<5> polynomials[] = {polynomials_on(rays, of[I])...};
+  RootSearch<5> searches[] = {RootSearch<5>(polynomials[I], hn::FirstN(RayTag(), of[I].wanted))...};
+  for (int step = 0; step < kMostSteps && !(searches[I].has_ended() && ...); ++step) (searches[I].step(), ...);
+  (store_points(rays, of[I], level_of_root(polynomials[I], searches[I].root(), inside)), ...);
+}
+
+void points_on_rays_of_tiles(double epsilon, RaysOfTiles& rays) {
+  constexpr std::size_t kLanes = hn::MaxLanes(RayTag());
+  constexpr std::size_t kTogether = kLanes == 8 ? 4 : 2;  // more do not fit into the registers that there are
+  std::array<RayRegister, RaysOfTiles::kMost / kLanes> registers;
+  std::size_t count = 0;
+  for (std::size_t g = 0; g < rays.groups; ++g)
+    for (std::size_t i = 0; i < rays.rays_in[g]; i += kLanes)
+      registers[count++] = {&rays.of_tiles[rays.tile_of[g]], RaysOfTiles::kGroup * g + i, rays.rays_in[g] - i};
+  const LevelsInside inside(epsilon);
+  std::size_t i = 0;
+  for (; i + kTogether <= count; i += kTogether)
+    place_registers(rays, registers.data() + i, inside, std::make_index_sequence<kTogether>());
+  for (; i < count; ++i) place_registers(rays, registers.data() + i, inside, std::make_index_sequence<1>());
 }
 
 /// Levels of rays to squares, on which the interpolant is linear. `a`: sum of all heights.
@@ -313,7 +363,7 @@ namespace tegl::detail {
 
 HWY_EXPORT(levels_of_tesseract);
 HWY_EXPORT(levels_of_cubes);
-HWY_EXPORT(points_on_rays);
+HWY_EXPORT(points_on_rays_of_tiles);
 
 void find_levels(const std::array<double, 16>& products, double epsilon, TesseractRays& rays) noexcept {
   if (is_finite_enough(products[0]))
@@ -322,8 +372,8 @@ void find_levels(const std::array<double, 16>& products, double epsilon, Tessera
     std::fill_n(rays.levels.begin(), rays.count, 0.5);
 }
 
-void place_on_rays(const TileBox& box, TesseractRays& rays) noexcept {
-  HWY_DYNAMIC_DISPATCH(points_on_rays)(box, rays);
+void place_on_rays(double epsilon, RaysOfTiles& rays) noexcept {
+  if (rays.groups != 0) HWY_DYNAMIC_DISPATCH(points_on_rays_of_tiles)(epsilon, rays);
 }
 
 void cube_levels(CubeRays& rays, unsigned degree, double epsilon, std::array<double, CubeRays::kMost>& out) noexcept {

@@ -28,11 +28,4 @@ struct TesseractRays {
 /// Sets the levels, equal to TileHeights<4>::level. `products`: of TileHeights.
 void find_levels(const std::array<double, 16>& products, double epsilon, TesseractRays& rays) noexcept;
 
-/// Two opposite corners of a tile, by axis.
-struct TileBox {
-  std::array<double, 4> from, to;
-};
-/// Replaces the ends of rays by the points at their levels, in the box: equal to Placement::Cell of ray_coordinate.
-void place_on_rays(const TileBox& box, TesseractRays& rays) noexcept;
-
 }  // namespace tegl::detail

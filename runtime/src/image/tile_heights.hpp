@@ -29,6 +29,8 @@ class TileHeights {
   void find_levels(TesseractRays& rays) const noexcept requires(K == 4) {
     detail::find_levels(products_, epsilon_, rays);
   }
+  [[nodiscard]] const std::array<double, kCorners>& products() const noexcept { return products_; }
+  [[nodiscard]] double epsilon() const noexcept { return epsilon_; }
 
  private:
   /// Coefficients of the products of u_a = 2 x_a - 1 over sets of axes.

@@ -427,7 +427,7 @@ ResolvedSize Counter<N>::assemble(const ResolvedTile& tile, ResolvedTesseract& t
 
 template <int N>
 CountScratch Counter<N>::make_scratch() const {
-  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr, nullptr, {}};
+  CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr, nullptr, 0, {}};
   if (lists_cubes_) {
     scratch.tesseract = std::make_unique<ResolvedTesseract>(make_resolved_tesseract(estimator_->triangulation()));
     scratch.of_word = std::make_unique<TesseractsOfWord>();
@@ -633,7 +633,7 @@ void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& s
   const bool ranks = has_ranks(slab, above);
   SlabChunk sums;
   std::uint64_t in_layer = 0;
-  if (!slab.assembled.empty()) slab.assembled[chunk].clear();
+  if (!slab.assembled.empty()) slab.assembled[chunk].clear(scratch.assembled_words);
   for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
     if (!slab.assembled.empty()) slab.first_assembled[row] = slab.assembled[chunk].size();
     if (keeps_tiles()) slab.first_tile[row] = chunk * kChunkRows * shape_.size(0) + sums.active;
@@ -650,6 +650,8 @@ void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& s
   }
   upper.chunk_vertices[chunk] = in_layer;
   slab.chunks[chunk] = sums;
+  // the next chunk probably needs as much room: in noise, a chunk has a few per cent more or less than another
+  if (!slab.assembled.empty()) scratch.assembled_words = slab.assembled[chunk].size() / 32 * 33;
 }
 
 template class Counter<2>;

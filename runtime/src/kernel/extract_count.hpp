@@ -36,6 +36,7 @@ struct CountScratch {
   TileLists tiles;                               ///< one row, if slabs do not keep lists
   std::unique_ptr<ResolvedTesseract> tesseract;  ///< N = 4, if ambiguities are resolved from the data
   std::unique_ptr<TesseractsOfWord> of_word;     ///< with `tesseract`
+  std::size_t assembled_words = 0;               ///< of the last chunk's kept tiles, and a few more
   RowAnswers answers;                            ///< if a caller's estimator resolves ambiguities
 };
 

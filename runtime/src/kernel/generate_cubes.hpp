@@ -10,6 +10,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "image/rays_of_tiles.hpp"
 #include "kernel/extract_cell.hpp"
 #include "kernel/extract_count.hpp"
 #include "kernel/extract_edges.hpp"
@@ -20,7 +21,8 @@
 
 namespace tegl::detail {
 
-/// Collects the own vertices of cubes, and of tesseracts those at means of vertices on edges, and writes many at once:
+/// Collects the own vertices of cubes, and of tesseracts those at means of vertices on edges and on rays, and writes
+/// many at once:
 /// their arithmetic is done in the lanes of registers, and without branches on the kind of each, which noise makes hard
 /// to predict. One per thread.
 template <int N, class Real>
@@ -36,7 +38,10 @@ class CellVertices {
   void start(const Run& vertices) noexcept { vertices_ = vertices; }
   void finish() noexcept {
     write_means(in_cubes_);
-    if constexpr (N == 4) write_means(in_tesseracts_);
+    if constexpr (N == 4) {
+      write_means(in_tesseracts_);
+      write_tesseract_rays();
+    }
     for (unsigned kind = 0; kind < rays_.size(); ++kind) write_rays(kind);
   }
 
@@ -60,8 +65,9 @@ class CellVertices {
     }
   }
 
-  /// Adds the own vertices of a tesseract that is combined from its cubes, which have `lists`. Those that are no means
-  /// are written at once. `first`: number of the first.
+  /// Adds the own vertices of a tesseract that is combined from its cubes, which have `lists`. If it has one that is
+  /// neither a mean nor on a ray, or one on the ray of another, or vertices have normals, then all except the means are
+  /// written at once. `first`: number of the first.
   void add(const ResolvedView& filling, const ResolvedCubes::Lists& lists, Triangulation triangulation,
            const Base& base, unsigned signature, Index first) noexcept requires(N == 4) {
     std::uint64_t others = 0;  // masks
@@ -73,7 +79,10 @@ class CellVertices {
         others |= mask;
     }
     if (others == 0) return;
-    write_others(filling, others, lists, triangulation, base, signature, first);
+    if (placement_.normals() == nullptr && ResolvedPlaces::are_on_rays(others))
+      add_rays(filling, others, base, signature, first);
+    else
+      write_others(filling, others, lists, triangulation, base, signature, first);
   }
 
  private:
@@ -137,6 +146,42 @@ class CellVertices {
     rays.count = 0;
   }
 
+  /// Adds the own vertices of a tesseract that are no means, but on rays; `masks`: of all of them.
+  [[gnu::noinline]] void add_rays(const ResolvedView& filling, std::uint64_t masks, const Base& base,
+                                  unsigned signature, Index first) noexcept requires(N == 4) {
+    if (!of_tesseracts_.rays.has_room(filling.own_vertices)) write_tesseract_rays();
+    const CellHeights<4> heights = source_.template heights<4>(base, 15u);
+    epsilon_ = heights.epsilon();
+    const auto edges = ResolvedPlaces::needs_edges(masks) ? EdgePlaces<4, 15>(source_, base, signature)
+                                                          : EdgePlaces<4, 15>(source_, base);
+    RaysOfTiles& rays = of_tesseracts_.rays;
+    of_tesseracts_.slabs[rays.tiles] = base[N - 1];
+    const typename Placement<N, Real>::Cell in_cell(placement_, base);
+    std::size_t place = rays.groups * RaysOfTiles::kGroup;
+    const std::size_t before = of_tesseracts_.count;
+    for (unsigned j = 0; j < filling.own_vertices; ++j) {
+      const std::uint64_t mask = filling.masks[j];
+      if (ResolvedPlaces::is_mean(mask)) continue;
+      const TilePoint<4> end = ResolvedPlaces::ray_end(mask, edges);
+      for (std::size_t a = 0; a < 4; ++a) rays.ends[a][place] = end[a];
+      of_tesseracts_.places[of_tesseracts_.count] = static_cast<std::uint16_t>(place++);
+      of_tesseracts_.ids[of_tesseracts_.count++] = first + j;
+    }
+    rays.add(heights.products(), {in_cell.from(), in_cell.to()}, of_tesseracts_.count - before);
+  }
+  void write_tesseract_rays() noexcept requires(N == 4) {
+    RaysOfTiles& rays = of_tesseracts_.rays;
+    place_on_rays(epsilon_, rays);
+    for (std::size_t i = 0; i < of_tesseracts_.count; ++i) {
+      const std::size_t at = of_tesseracts_.places[i];
+      const TilePoint<4> point = {rays.ends[0][at], rays.ends[1][at], rays.ends[2][at], rays.ends[3][at]};
+      const std::size_t slab = of_tesseracts_.slabs[rays.tile_of[at / RaysOfTiles::kGroup]];
+      vertices_[of_tesseracts_.ids[i]] = placement_.inside_slab(placement_.world(point), slab);
+    }
+    of_tesseracts_.count = 0;
+    rays.clear();
+  }
+
   /// Writes the own vertices of a tesseract that are no means; `masks`: of all of them. Not inlined, because its stack
   /// frame is large.
   [[gnu::noinline]] void write_others(const ResolvedView& filling, std::uint64_t masks,
@@ -146,9 +191,6 @@ class CellVertices {
                                                           : EdgePlaces<4, 15>(source_, base);
     ResolvedPlaces places(edges, triangulation, lists);
     const typename Placement<N, Real>::Cell in_cell(placement_, base);
-    if (placement_.normals() == nullptr && (masks & ResolvedTesseract::kRepeats) == 0)
-      return places.own_vertices(
-          filling, in_cell, [&](unsigned j, const TilePoint<N>& point) { vertices_[first + j] = in_cell.at(point); });
     places.own_vertices(filling, [&](unsigned j, const TilePoint<N>& place) {
       vertices_[first + j] = in_cell(place);
       if (placement_.normals() != nullptr)
@@ -188,6 +230,15 @@ class CellVertices {
   Means<3> in_cubes_;
   struct None {};
   std::conditional_t<N == 4, Means<4>, None> in_tesseracts_;
+  /// Vertices of tesseracts on rays. By vertex: its place among the rays, and its number. By tile: the lower layer.
+  struct OnRays {
+    RaysOfTiles rays;
+    std::size_t count = 0;
+    std::array<std::uint16_t, RaysOfTiles::kMost> places;
+    std::array<Index, RaysOfTiles::kMost> ids;
+    std::array<std::size_t, RaysOfTiles::kMostGroups> slabs;
+  };
+  std::conditional_t<N == 4, OnRays, None> of_tesseracts_;
   std::array<CubeRays, 3> rays_;
   std::array<Targets, 3> of_rays_;
   std::array<std::array<std::uint8_t, kAtOnce>, 3> corners_;

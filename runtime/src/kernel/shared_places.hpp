@@ -189,6 +189,24 @@ class ResolvedPlaces {
   static bool is_mean(std::uint64_t mask) noexcept { return (mask & ~kEdgesOfMask) == 0; }
   static std::uint32_t edges_of(std::uint64_t mask) noexcept { return static_cast<std::uint32_t>(mask >> 16); }
 
+  /// Whether own vertices with these masks, all combined and none a mean, are all on rays, each on a ray of its own.
+  static bool are_on_rays(std::uint64_t masks) noexcept {
+    constexpr std::uint64_t kOthers =
+        ResolvedTesseract::kIsBarycentre | ResolvedTesseract::kIsDouble | ResolvedTesseract::kRepeats;
+    return (masks & kOthers) == 0;
+  }
+  /// Positions of vertices on edges, by local edge.
+  static auto on_edge(const EdgePlaces<4, 15>& edges) noexcept {
+    return [&edges](unsigned edge) { return edge_point_at_once<4>(edge, edges.alpha(edge)); };
+  }
+  /// The end of the ray of an own vertex. `edges`: have the vertices on edges, if the mask has edges.
+  static TilePoint<4> ray_end(std::uint64_t mask, const EdgePlaces<4, 15>& edges) noexcept {
+    const std::uint64_t points = mask & ~ResolvedTesseract::kRepeats;
+    if ((points & (points - 1)) == 0)  // one corner: the most frequent copies
+      return kCornerPoints<4>[static_cast<unsigned>(std::countr_zero(points))];
+    return mask_mean<4>(points, std::identity(), on_edge(edges), true);
+  }
+
   /// Whether own vertices with these masks, all combined, depend on vertices on edges. Not if all are copies of
   /// corners.
   static bool needs_edges(std::uint64_t masks) noexcept { return masks >> 16 != 0; }
@@ -213,25 +231,6 @@ class ResolvedPlaces {
     }
   }
 
-  /// The same with axis coordinates; `in_cell`: Placement::Cell. Requires that no vertex repeats another one.
-  template <class Cell, class Write>
-  void own_vertices(const ResolvedView& filling, const Cell& in_cell, const Write& write) noexcept {
-    TesseractRays rays;
-    find_rays(filling, rays);
-    place_on_rays({in_cell.from(), in_cell.to()}, rays);
-    std::size_t ray = 0;
-    for (unsigned j = 0; j < filling.own_vertices; ++j) {
-      const std::uint64_t mask = filling.masks[j];
-      if (is_mean(mask)) continue;
-      if (!is_on_ray(mask)) {
-        write(j, in_cell.on_axes(place_off_rays(filling, j)));
-        continue;
-      }
-      write(j, TilePoint<4>{rays.ends[0][ray], rays.ends[1][ray], rays.ends[2][ray], rays.ends[3][ray]});
-      ++ray;
-    }
-  }
-
  private:
   static constexpr std::uint64_t kEdgesOfMask = std::uint64_t{0xffffffffu} << 16;
 
@@ -244,19 +243,11 @@ class ResolvedPlaces {
   static bool is_on_ray(std::uint64_t mask) noexcept {
     return (mask & (ResolvedTesseract::kIsBarycentre | ResolvedTesseract::kIsDouble)) == 0 && (mask & 0xffffu) != 0;
   }
-  [[nodiscard]] auto on_edge() const noexcept {
-    return [this](unsigned edge) { return edge_point_at_once<4>(edge, edges_.alpha(edge)); };
-  }
   /// The rays of a filling's own vertices, in their order, and their levels.
   void find_rays(const ResolvedView& filling, TesseractRays& rays) noexcept {
     for (unsigned j = 0; j < filling.own_vertices; ++j) {
       const std::uint64_t mask = filling.masks[j];
-      if (!is_on_ray(mask)) continue;
-      const std::uint64_t points = mask & ~ResolvedTesseract::kRepeats;
-      if ((points & (points - 1)) == 0)  // one corner: the most frequent copies
-        rays.add(kCornerPoints<4>[static_cast<unsigned>(std::countr_zero(points))]);
-      else
-        rays.add(mask_mean<4>(points, std::identity(), on_edge(), true));
+      if (is_on_ray(mask)) rays.add(ray_end(mask, edges_));
     }
     if (rays.count != 0) rays_.find_levels(rays);
   }
@@ -269,7 +260,7 @@ class ResolvedPlaces {
       place = (*this)(static_cast<unsigned>(mask & 0xffu));
       for (double& x : place) x = 0.25 + 0.5 * x;
     } else {
-      place = mask_place<4>(mask & ~ResolvedTesseract::kRepeats, std::identity(), on_edge(), true, rays_);
+      place = mask_place<4>(mask & ~ResolvedTesseract::kRepeats, std::identity(), on_edge(edges_), true, rays_);
     }
     repeat(place, mask);
     return place;

@@ -31,8 +31,9 @@ inline void check_dimension(Lattice lattice, int dim) {
                     lattice == Lattice::fcc && dim == 4 ? ", or the lattice fcc_in_time for fcc over time" : ""));
 }
 
-/// Throws unless the axes before `layers` have equal steps, so that half a step is defined, and there are layers enough
-/// for a cell.
+/// Throws unless the axes before `layers` have equal steps, so that half a step is defined, and there are samples
+/// enough for cells that have facets in common: in a row of one sample, tetrahedra of bcc would have edges in common
+/// only.
 template <int N>
 void check_grid(const Grid<N>& grid, Lattice lattice, int layers) {
   for (int a = 0; a < layers; ++a) {
@@ -43,6 +44,9 @@ void check_grid(const Grid<N>& grid, Lattice lattice, int layers) {
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("lattice {}: {} has a step of {}; expected {}, that of all others", name_of(lattice),
                                 label_of_axis(axis, a), axis[i] - axis[i - 1], step));
+    if (lattice == Lattice::bcc && axis.size() < 2)
+      throw Error(ErrorCode::InvalidArgument, fmt::format("lattice bcc: {} has {} sample; expected at least 2",
+                                                          label_of_axis(axis, a), axis.size()));
   }
   const std::size_t count = grid.axes[layers].size();
   if (count < least_layers(lattice))

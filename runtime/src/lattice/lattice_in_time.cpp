@@ -4,7 +4,9 @@
 #include "lattice/lattice_in_time.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "complex/cell_groups.hpp"
 #include "lattice/lattice_cells.hpp"
 #include "lattice/lattice_grid.hpp"
 #include "tegl/error.hpp"
@@ -31,7 +33,16 @@ Complex<4> fcc_over_times(const Complex<3>& at_a_time, const Grid<4>& grid, std:
   std::vector<double> times;
   for (std::size_t k = 0; k < grid.axes[3].size(); ++k)
     times.push_back(grid.linear[3][3] * grid.axes[3][k] + grid.offset[3]);
-  return in_time<3>(at_a_time, times, values);
+  const bool descends = times.size() > 1 && times.front() > times.back();
+  if (!descends) return in_time<3>(at_a_time, times, values);
+  // `in_time` has ascending times: the mirror image, whose cells are then oriented anew
+  for (double& time : times) time = -time;
+  const Complex<4> mirrored = in_time<3>(at_a_time, times, values);
+  std::vector<std::array<double, 4>> points = mirrored.points();
+  for (auto& point : points) point[3] = -point[3];
+  Complex<4> complex = ComplexAccess::layered<4>(std::move(points), ComplexAccess::cells(mirrored));
+  complex.set_values(std::vector<double>(values.begin(), values.end()));
+  return complex;
 }
 
 }  // namespace tegl::detail

@@ -17,7 +17,8 @@ namespace tegl::detail {
 /// InvalidArgument (a world map that mixes time and space; uneven steps; fewer than 2 layers), TooLarge.
 [[nodiscard]] Complex<3> fcc_at_a_time(const Grid<4>& grid, const std::array<std::size_t, 4>& margin = {});
 
-/// The prisms of these cells between all times of `grid`. `values`: of its samples. Errors: those of `in_time`.
+/// The prisms of these cells between all times of `grid`, which may descend. `values`: of its samples. Errors: those of
+/// `in_time`.
 [[nodiscard]] Complex<4> fcc_over_times(const Complex<3>& at_a_time, const Grid<4>& grid,
                                         std::span<const double> values);
 

@@ -19,6 +19,7 @@
 #include "lattice/lattice_grid.hpp"
 #include "lattice/lattice_in_time.hpp"
 #include "periodic/periodic_layers.hpp"
+#include "periodic/periods.hpp"
 
 namespace tegl::detail {
 
@@ -36,7 +37,6 @@ void check_lattice_periods(const Grid<N>& grid, Lattice lattice, const AxisPerio
     if (periods[a] == 0.0) continue;
     const Axis& axis = grid.axes[a];
     const std::size_t size = axis.size();
-    // farther than half a period apart, points of one cell would have no nearest places
     if (a == layer_axis(lattice) && (size % 2 != 0 || size < 6))
       refuse(lattice, fmt::format("{} is periodic and has {} layers; expected an even number, at least 6, as odd "
                                   "layers are shifted",
@@ -48,6 +48,12 @@ void check_lattice_periods(const Grid<N>& grid, Lattice lattice, const AxisPerio
     if (axis.is_uniform() && !(std::abs(periods[a] - expected) <= 1e-6 * expected))
       refuse(lattice, fmt::format("the period of {} is {}; expected {}, the number of samples x the step",
                                   label_of_axis(axis, a), periods[a], expected));
+    // Half a period apart or more, points of one cell would have no nearest places. Across the layers, all cells but
+    // triangles extend over two steps.
+    const int steps = a == layer_axis(lattice) && lattice != Lattice::triangular ? 2 : 1;
+    const bool is_longer = std::isfinite(periods[a]) && periods[a] > std::abs(axis[size - 1] - axis[0]);
+    if (const std::string reason = is_longer ? too_long_steps(axis, a, periods[a], steps) : ""; !reason.empty())
+      refuse(lattice, reason);
   }
 }
 

@@ -12,6 +12,8 @@
 #include "base/exact_sum.hpp"
 #include "mesh/simplex_geometry.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 
@@ -55,5 +57,10 @@ struct CutInput {
 /// Adds the cuts of the simplices from `from` to `to` - 1, in this order. N = 3, 4, 5.
 template <int N>
 void add_cuts(const CutInput<N>& input, std::size_t from, std::size_t to, CutSums& sums);
+
+/// `measure_cuts` of a contour without periods. N = 3, 4, 5.
+template <int N>
+std::vector<CutMeasures> measure_cuts_of_view(const SimplexView<N>& contour, GradientDirection direction,
+                                              std::span<const double> at, const WorkOptions& work);
 
 }  // namespace tegl::detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Measures of a contour, and measures of its cuts without constructing them.
+// Measures of a contour, and measures of its cuts without constructing them (measure_cuts is in cut/measure_cuts.cpp).
 // The sums over the cuts of simplices are in cut_sums.cpp.
 #include "tegl/measure.hpp"
 
@@ -17,7 +17,6 @@
 #include "mesh/incidence_data.hpp"
 #include "mesh/measure_pieces.hpp"
 #include "mesh/open_ridges.hpp"
-#include "tegl/slice.hpp"
 
 namespace tegl {
 namespace {
@@ -143,9 +142,12 @@ Measures<N> measure_view(const detail::SimplexView<N>& contour, GradientDirectio
   return result;
 }
 
+}  // namespace
+
 template <int N>
-std::vector<CutMeasures> measure_cuts_of_view(const detail::SimplexView<N>& contour, GradientDirection direction,
-                                              std::span<const double> at, const WorkOptions& work) {
+std::vector<CutMeasures> detail::measure_cuts_of_view(const detail::SimplexView<N>& contour,
+                                                      GradientDirection direction, std::span<const double> at,
+                                                      const WorkOptions& work) {
   const auto [low, high] = bounding_box(contour);
   std::vector<double> levels;  // the values rounded as by `slice`
   for (const double t : at)
@@ -188,28 +190,12 @@ std::vector<CutMeasures> measure_cuts_of_view(const detail::SimplexView<N>& cont
   return result;
 }
 
-/// Makes the cuts of a wrapped contour, which are wrapped, too: whether one encloses a content depends on where it
-/// winds round.
-template <int N, class Real>
-std::vector<CutMeasures> measure_wrapped_cuts(const Contour<N, Real>& contour, std::span<const double> at,
-                                              const WorkOptions& work) {
-  constexpr std::size_t kTogether = 16;  // cuts in memory at a time
-  std::vector<CutMeasures> result;
-  for (std::size_t first = 0; first < at.size(); first += kTogether) {
-    const std::size_t end = std::min(first + kTogether, at.size());
-    std::vector<Hyperplane<N>> hyperplanes;
-    for (std::size_t i = first; i < end; ++i) hyperplanes.push_back(Hyperplane<N>::across(N - 1, at[i]));
-    const auto done = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(at.size()); };
-    for (const auto& cut : slice_stack(contour, std::span<const Hyperplane<N>>(hyperplanes),
-                                       {work.threads, detail::part_of(work.progress, done(first), done(end))})) {
-      const Measures<N - 1> measures = measure(cut, {work.threads, {}});
-      result.push_back({at[result.size()], measures.size, measures.content});
-    }
-  }
-  return result;
-}
-
-}  // namespace
+template std::vector<CutMeasures> detail::measure_cuts_of_view(const detail::SimplexView<3>&, GradientDirection,
+                                                               std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> detail::measure_cuts_of_view(const detail::SimplexView<4>&, GradientDirection,
+                                                               std::span<const double>, const WorkOptions&);
+template std::vector<CutMeasures> detail::measure_cuts_of_view(const detail::SimplexView<5>&, GradientDirection,
+                                                               std::span<const double>, const WorkOptions&);
 
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& contour, const WorkOptions& work) {
@@ -227,29 +213,9 @@ requires DimensionBetween<N, 2, 5> Measures<N> measure(const Contour<N, Real>& c
   return measure_view<N>(view, contour.direction, &incidence.data(), work);
 }
 
-template <int N, Coordinate Real>
-requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour,
-                                                                         std::span<const double> at,
-                                                                         const WorkOptions& work) {
-  detail::require_vertices(contour);
-  detail::require_finite(contour);
-  for (const double t : at)
-    if (!std::isfinite(t))
-      throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
-  if (!contour.periods.empty()) return measure_wrapped_cuts(contour, at, work);
-  return measure_cuts_of_view(detail::SimplexView<N>(contour), contour.direction, at, work);
-}
-
 #define TEGL_INSTANTIATE_CONTOURS_TO_5(N, Real)                              \
   template Measures<N> measure(const Contour<N, Real>&, const WorkOptions&); \
   template Measures<N> measure(const Contour<N, Real>&, const Incidence<N>&, const WorkOptions&);
 #include "base/instantiate.hpp"
-
-template std::vector<CutMeasures> measure_cuts(const Contour<3, float>&, std::span<const double>, const WorkOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<3, double>&, std::span<const double>, const WorkOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<4, float>&, std::span<const double>, const WorkOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<4, double>&, std::span<const double>, const WorkOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<5, float>&, std::span<const double>, const WorkOptions&);
-template std::vector<CutMeasures> measure_cuts(const Contour<5, double>&, std::span<const double>, const WorkOptions&);
 
 }  // namespace tegl

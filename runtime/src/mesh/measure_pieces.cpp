@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/orthonormal.hpp"
 #include "base/workers.hpp"
 #include "mesh/closed_stars.hpp"
 #include "mesh/lifts.hpp"
@@ -169,27 +170,17 @@ class AddPieces {
 
 template <int N>
 std::optional<PointOf<N>> across_periods(std::span<const Period<N>> periods) {
-  // Gram-Schmidt: an orthonormal basis of the periods, then the axis with the longest rest
-  std::vector<PointOf<N>> basis;
-  const auto rest_of = [&](PointOf<N> x) {
-    for (const PointOf<N>& unit : basis) {
-      double along = 0.0;
-      for (int a = 0; a < N; ++a) along += unit[a] * x[a];
-      for (int a = 0; a < N; ++a) x[a] -= along * unit[a];
-    }
-    return x;
-  };
-  const auto unit_of = [](PointOf<N> x) {
-    const double length = length_of<N>(x);
-    for (double& component : x) component /= length;
-    return x;
-  };
-  for (const Period<N>& period : periods) basis.push_back(unit_of(rest_of(period.vector)));
+  // the axis with the longest rest beside the periods
+  OrthonormalVectors<N> basis;
+  for (const Period<N>& period : periods) basis.add(period.vector);
   if (basis.size() >= N) return std::nullopt;
   PointOf<N> best{};
   for (int a = 0; a < N; ++a)
-    if (const PointOf<N> rest = rest_of(unit_vector<N>(a)); length_of<N>(rest) > length_of<N>(best) + 1e-9) best = rest;
-  return unit_of(best);
+    if (const PointOf<N> rest = basis.rest_of(unit_vector<N>(a)); length_of<N>(rest) > length_of<N>(best) + 1e-9)
+      best = rest;
+  const double length = length_of<N>(best);
+  for (double& component : best) component /= length;
+  return best;
 }
 
 template <int N>

@@ -87,10 +87,41 @@ std::string label_of_axis(const Axis& axis, int number) {
   return fmt::format("axis {} ({})", number, name);
 }
 
+std::string too_long_steps(const Axis& axis, int number, double period, int steps) {
+  constexpr double kBelow = 1e-6;  // so much less than half that the rounding of vertices to float makes no difference
+  const std::size_t count = axis.size(), apart = static_cast<std::size_t>(steps);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_across = i + apart >= count;
+    const double turn = axis.is_descending() ? -period : period;
+    const double to = is_across ? axis[i + apart - count] + turn : axis[i + apart];
+    const double length = std::abs(to - axis[i]);
+    if (length < (0.5 - kBelow) * period) continue;
+    const std::string start = fmt::format("the period of {} is {}, and ", label_of_axis(axis, number), period);
+    if (steps > 1)
+      return start + fmt::format(
+                         "two steps, from {} to {}, are {}; expected two steps of less than half the period, "
+                         "as cells extend over two",
+                         axis[i], to, length);
+    if (!is_across)
+      return start + fmt::format("the step from {} to {} is {}; expected steps of less than half the period", axis[i],
+                                 to, length);
+    const double span = length_of(axis), likely = span + span / static_cast<double>(count - 1);
+    return start + fmt::format(
+                       "the step across the seam, from {} to {}, is {}; expected steps of less than half the "
+                       "period, or a period in the unit of the axis, such as {:.6g}",
+                       axis[i], to, length, likely);
+  }
+  return {};
+}
+
 template <int N>
 void check_periods(const Grid<N>& grid, const AxisPeriods<N>& periods, const ExtractOptions& options) {
-  for (int a = 0; a < N; ++a)
-    if (periods[a] != 0.0) check_period(grid.axes[a], a, periods[a]);
+  for (int a = 0; a < N; ++a) {
+    if (periods[a] == 0.0) continue;
+    check_period(grid.axes[a], a, periods[a]);
+    if (N == 5) continue;  // vertices of divisions are right nevertheless
+    if (const std::string reason = too_long_steps(grid.axes[a], a, periods[a]); !reason.empty()) refuse(reason);
+  }
   if (std::all_of(periods.begin(), periods.end(), [](double period) { return period == 0.0; }))
     refuse("no axis is periodic; expected a period that is not 0");
   if (options.ambiguity == Ambiguity::custom)

@@ -25,6 +25,7 @@
 #include "simplify/box_tree.hpp"
 #include "simplify/deviation_target.hpp"
 #include "simplify/facet_neighbours.hpp"
+#include "simplify/flat_simplices.hpp"
 #include "simplify/prism_cover.hpp"
 #include "simplify/prism_walk.hpp"
 #include "simplify/scaled_simplices.hpp"
@@ -97,6 +98,7 @@ struct DeviationInput {
   const std::vector<NearPoint>& near;    ///< by vertex of `from`: a point of `to`, the nearest one if it matters
   double enough;                         ///< bounds below it are not refined
   std::vector<double>& of_to;            ///< empty if it is not returned
+  std::atomic<std::uint64_t>* comparisons;  ///< as in DeviationValues
 
   void raise_bound(Index simplex, double bound) const {
     if (!of_to.empty()) raise(of_to[simplex], bound);
@@ -113,6 +115,11 @@ class SimplexDeviation {
       : m_(measure),
         walk_(measure.to.corners, measure.neighbours),
         few_(measure.gradients, measure.neighbours, &measure.tree) {}
+  ~SimplexDeviation() {
+    if (m_.comparisons != nullptr) m_.comparisons->fetch_add(comparisons_, std::memory_order_relaxed);
+  }
+  SimplexDeviation(const SimplexDeviation&) = delete;
+  SimplexDeviation& operator=(const SimplexDeviation&) = delete;
 
   /// Upper bound of the distance of all points of simplex s. Raises `least` to the largest attained distance.
   double bound(Index s, double& least) {
@@ -357,6 +364,7 @@ class SimplexDeviation {
     lowest -= limit;
     highest += limit;
     // height range of each near simplex
+    comparisons_ += part.near.size();
     std::size_t kept = 0;
     for (const std::uint32_t number : part.near) {
       const NearSimplex& near = near_[number];
@@ -457,6 +465,7 @@ class SimplexDeviation {
   double reach_ = 0.0;
   std::vector<NearSimplex> near_;
   std::vector<Part> parts_;
+  std::uint64_t comparisons_ = 0;
   // Current part.
   std::vector<HeightRange> ranges_;
   ClippedSimplex<N> clipped_;
@@ -474,6 +483,8 @@ void require_scale(const std::array<double, N>& scale) {
 /// Refines the simplices with the largest bounds: a few of them determine the bound of the whole contour.
 template <int N>
 void refine_largest(const DeviationInput<N>& measure, Deviation& result, unsigned threads, const Progress& progress) {
+  FlatSimplices<N> flat(measure.from, measure.enough, result.of_from, threads);
+  flat.lower(result.of_from);
   std::vector<std::size_t> order(result.of_from.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const std::size_t most = std::min(order.size() - 1, kMostRefined + order.size() / kRefinedShare);
@@ -491,6 +502,7 @@ void refine_largest(const DeviationInput<N>& measure, Deviation& result, unsigne
           if (bound > enough) bound = std::min(bound, one.refined_bound(static_cast<Index>(order[i]), enough));
         }
       });
+  flat.lower(result.of_from);
   result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
   for (double& bound : result.of_to) bound = std::min(bound, result.bound);
 }
@@ -526,9 +538,32 @@ double largest_of_samples(const ScaledSimplices<N>& from, const BoxTree<N>& tree
   return largest;
 }
 
+/// Blocks of kGrain simplices are measured in rounds: every 64th one first, then those half way between the earlier
+/// ones. The last round has half of all blocks.
+constexpr int kRounds = 7;
+
+/// Measures the simplices of one round, and raises result.least to the largest attained distance.
+template <int N>
+void measure_round(const DeviationInput<N>& measure, int round, unsigned threads, const Progress& progress,
+                   Deviation& result) {
+  constexpr std::size_t kApart = std::size_t{1} << (kRounds - 1);
+  const std::size_t size = measure.from.simplices.size(), blocks = (size + kGrain - 1) / kGrain;
+  const std::size_t begin = round == 0 ? 0 : kApart >> round, apart = round == 0 ? kApart : 2 * begin;
+  if (begin >= blocks) return;
+  for_each_block((blocks - begin + apart - 1) / apart, 1, threads, progress,
+                 [&] { return SimplexDeviation<N>(measure); },
+                 [&](std::size_t number, std::size_t, std::size_t, SimplexDeviation<N>& one) {
+                   const std::size_t first = (begin + number * apart) * kGrain, end = std::min(size, first + kGrain);
+                   double reached = 0.0;
+                   for (std::size_t s = first; s < end; ++s)
+                     result.of_from[s] = one.bound(static_cast<Index>(s), reached);
+                   raise(result.least, reached);
+                 });
+}
+
 template <int N>
 void measure_all(const ScaledSimplices<N>& from, const DeviationTarget<N>& target, double enough, unsigned threads,
-                 const Progress& progress, Deviation& result) {
+                 const Progress& progress, std::atomic<std::uint64_t>* comparisons, Deviation& result) {
   const auto& [to, neighbours, open, tree, gradients] = target;
   // distances of vertices: exactly where they are needed
   const SimplexWalk<N> walk(gradients, neighbours);
@@ -537,17 +572,19 @@ void measure_all(const ScaledSimplices<N>& from, const DeviationTarget<N>& targe
   result.least = vertices.find_largest(part_of(progress, 0.05, 0.08));
   result.least =
       largest_of_samples(from, tree, walk, vertices.near(), result.least, threads, part_of(progress, 0.08, 0.12));
-  enough = enough > 0.0 ? std::max(enough, kLeastShare * result.least) : result.least;
-  vertices.search_above(enough / kLooseness, part_of(progress, 0.12, 0.15));
-  const DeviationInput<N> measure{from, to, tree, open, gradients, neighbours, vertices.near(), enough, result.of_to};
-  for_each_block(
-      from.simplices.size(), kGrain, threads, part_of(progress, 0.15, 0.9),
-      [&] { return SimplexDeviation<N>(measure); },
-      [&](std::size_t, std::size_t first, std::size_t end, SimplexDeviation<N>& one) {
-        double reached = 0.0;
-        for (std::size_t s = first; s < end; ++s) result.of_from[s] = one.bound(static_cast<Index>(s), reached);
-        raise(result.least, reached);
-      });
+  const auto sufficient = [&] { return enough > 0.0 ? std::max(enough, kLeastShare * result.least) : result.least; };
+  vertices.search_above(sufficient() / kLooseness, part_of(progress, 0.12, 0.15));
+  DeviationInput<N> measure{from,         to,           tree,       open, gradients, neighbours, vertices.near(),
+                            sufficient(), result.of_to, comparisons};
+  const Progress whole = part_of(progress, 0.15, 0.9);
+  // The first rounds are small samples. They find larger distances, so that later ones need fewer close bounds.
+  double done = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    const double end = std::ldexp(1.0, round + 1 - kRounds);
+    measure.enough = sufficient();
+    measure_round(measure, round, threads, part_of(whole, done, end), result);
+    done = end;
+  }
   refine_largest(measure, result, threads, part_of(progress, 0.9, 1.0));
 }
 
@@ -559,7 +596,7 @@ Deviation deviation_to(const ScaledSimplices<N>& from, const DeviationTarget<N>&
   Deviation result;
   result.of_from.assign(from.simplices.size(), 0.0);
   if (values.of_to) result.of_to.assign(to.contour.simplices.size(), 0.0);
-  measure_all(from, to, enough, work.threads, work.progress, result);
+  measure_all(from, to, enough, work.threads, work.progress, values.comparisons, result);
   result.of_from = values.of_from ? from.in_order_of_contour(result.of_from) : std::vector<double>();
   if (values.of_to) result.of_to = to.contour.in_order_of_contour(result.of_to);
   return result;

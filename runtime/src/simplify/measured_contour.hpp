@@ -6,6 +6,7 @@
 
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -47,6 +48,9 @@ class MeasuredContour {
     preparation_->begin();
   }
 
+  /// As DeviationValues::comparisons, of all measurements.
+  [[nodiscard]] std::uint64_t comparisons() const noexcept { return comparisons_; }
+
   /// Only to_other.of_to and from_other.of_from are filled: bounds by simplex of the other contour.
   struct Deviations {
     Deviation to_other, from_other;
@@ -60,13 +64,14 @@ class MeasuredContour {
     Deviations result;
     {
       const DeviationTarget<N> target(simplices, work.threads, part_of(work.progress, 0.0, 0.05));
-      result.to_other = deviation_to(*simplices_, target, enough, {.of_from = false},
+      result.to_other = deviation_to(*simplices_, target, enough, {.of_from = false, .comparisons = &comparisons_},
                                      {work.threads, part_of(work.progress, 0.05, 0.5)});
     }
     if (!target_)  // when the memory of the other target is free
       make_target(work.threads, part_of(work.progress, 0.5, 0.55));
-    result.from_other = deviation_to(simplices, *target_, enough > 0.0 ? enough : result.to_other.least,
-                                     {.of_to = false}, {work.threads, part_of(work.progress, 0.55, 1.0)});
+    result.from_other =
+        deviation_to(simplices, *target_, enough > 0.0 ? enough : result.to_other.least,
+                     {.of_to = false, .comparisons = &comparisons_}, {work.threads, part_of(work.progress, 0.55, 1.0)});
     return result;
   }
 
@@ -88,6 +93,7 @@ class MeasuredContour {
   std::optional<ScaledSimplices<N>> simplices_;
   std::optional<DeviationTarget<N>> target_;
   std::atomic<bool> is_wanted_ = true;
+  std::atomic<std::uint64_t> comparisons_ = 0;
   std::optional<TaskAside> preparation_;  ///< the last member: it waits for the thread that uses the others
 };
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "ambiguity/connected_sides.hpp"
+#include "ambiguity/cube_lists.hpp"
 #include "ambiguity/cube_words.hpp"
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/saddle.hpp"
@@ -367,6 +368,49 @@ void expect_variants_of_each_cube() {
 }
 
 TEST(CubeWords, VariantsAreThoseOfEachCubeByItself) { test::with_all_targets(expect_variants_of_each_cube); }
+
+/// All signatures and sets of high squares of a cube, eight cubes at a time.
+void expect_lists_of_each_cube(CubeListTable::Content content, Triangulation triangulation) {
+  const ResolvedCubes& cubes = ResolvedCubes::instance(triangulation);
+  const bool by_centre = content == CubeListTable::Content::by_centre;
+  const bool with_joins = content == CubeListTable::Content::with_joins;
+  std::mt19937_64 random(9);
+  std::vector<WantedLists> wanted(256 * 64 / 8);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    wanted[i] = {0, 0, static_cast<unsigned>(random() & 255u)};
+    for (unsigned f = 0; f < 8; ++f) {
+      wanted[i].signatures |= (8 * i + f) % 256 << (8 * f);
+      wanted[i].squares |= ((8 * i + f) / 256 | (random() & 192u)) << (8 * f);  // the last two bits have no meaning
+    }
+  }
+  std::vector<FoundLists> found(wanted.size());
+  find_lists(CubeListTable::instance(content, triangulation), wanted, found.data());
+  for (unsigned i = 0; i < found.size(); ++i)
+    for (unsigned f = 0; f < 8; ++f) {
+      const unsigned entry = ResolvedCubes::entry((8 * i + f) % 256, (8 * i + f) / 256);
+      const bool takes_second = (wanted[i].second >> f & 1u) != 0;
+      const auto centre = takes_second ? tile::Choice::high : tile::Choice::low;
+      const unsigned list = ResolvedCubes::list_of_entry(entry, by_centre ? centre : tile::Choice::separate);
+      if (!(with_joins && takes_second)) {
+        ASSERT_EQ(list, found[i].wanted[f]);
+        ASSERT_EQ(cubes.own_vertices(list) != 0, (found[i].with_vertices >> f & 1u) != 0);
+      }
+      const unsigned pairs = cube_joins()[entry].pairs;
+      const bool has_choice = by_centre ? ResolvedCubes::at_entry(entry).has_choice != 0 : with_joins && pairs == 1;
+      ASSERT_EQ(has_choice, (found[i].with_choice >> f & 1u) != 0);
+      ASSERT_EQ(with_joins && pairs > 1, (found[i].with_pairs >> f & 1u) != 0);
+      if (with_joins) {
+        ASSERT_EQ(entry, found[i].second[f]);
+      }
+    }
+}
+
+TEST(CubeLists, AreThoseOfEachCubeByItself) {
+  using Content = CubeListTable::Content;
+  for (const auto triangulation : {Triangulation::compact, Triangulation::barycentric})
+    for (const Content content : {Content::separate, Content::by_centre, Content::with_joins})
+      test::with_all_targets([&] { expect_lists_of_each_cube(content, triangulation); });
+}
 
 }  // namespace
 }  // namespace tegl::detail

@@ -24,6 +24,7 @@
 #include "tegl/extract.hpp"
 #include "tegl/lattice.hpp"
 #include "tegl/measure.hpp"
+#include "tegl/slice.hpp"
 #include "tegl/tile/diagonal_edges.hpp"
 #include "tile/tesseract_fill.hpp"
 
@@ -138,6 +139,38 @@ TEST(DecidedCaps, AtTheFirstTimeHaveTheContentOfTheClosedContourOfTheStep) {
         // compact contours of shuffled points have some divisions that are not proved
         const bool is_proved = triangulation == Triangulation::barycentric || mesh.points[0] == points.points[0];
         EXPECT_NEAR(content, volume_at(extract<double>(swept, 0.5, options), 0.0), is_proved ? 1e-9 : 0.01 * content);
+      }
+  }
+}
+
+/// Caps in border faces that are not plane have the same triangles in a mesh and in its cells over time.
+TEST(DecidedCaps, CutsAtStepsAreTheClosedContoursOfTheSteps) {
+  const auto points = grid_points<3>({5, 5, 5}, 0.15);
+  const std::vector<double> times = {0.0, 0.5, 2.0};
+  for (const MeshData<3>& mesh : {shuffled(cube_mesh(points)), shuffled(wedge_mesh(points)),
+                                  shuffled(pyramid_mesh(points)), shuffled(mixed_mesh(points, 5))}) {
+    const std::size_t count = mesh.points.size();
+    const std::vector<double> values = any_values(times.size() * count, 31), moves = any_values(values.size(), 32);
+    std::vector<std::array<double, 3>> places;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      places.push_back(mesh.points[i % count]);
+      places.back()[i % 3] += 0.05 * moves[i];
+    }
+    const Complex<4> swept = in_time<3>(mesh.complex(), times, values, places);
+    for (const Ambiguity rule : kAllRules)
+      for (const Triangulation triangulation : kKinds) {
+        SCOPED_TRACE(testing::Message() << static_cast<int>(rule) << " " << static_cast<int>(triangulation));
+        const ExtractOptions options = closed_by(rule, triangulation);
+        const auto contour = extract<double>(swept, 0.5, options);
+        for (std::size_t k = 0; k < times.size(); ++k) {
+          const auto from = static_cast<std::ptrdiff_t>(k * count), to = from + static_cast<std::ptrdiff_t>(count);
+          Complex<3> step = mesh.complex();
+          step.set_points({places.begin() + from, places.begin() + to});
+          step.set_values({values.begin() + from, values.begin() + to});
+          const auto closed = extract<double>(step, 0.5, options);
+          EXPECT_GT(closed.simplices.size(), 100u);
+          EXPECT_TRUE(same_surface(closed, slice(contour, Hyperplane<4>::across(3, times[k])))) << times[k];
+        }
       }
   }
 }

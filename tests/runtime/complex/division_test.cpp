@@ -257,13 +257,17 @@ TEST(Division, StepsOfHalfAPeriodAreErrorsIn2dTo4d) {
                  [&] { (void)count_divided(image.view(), Division::kuhn, 0.5, {}, periods); });
   };
   const Axis uneven = Axis::rectilinear({0.0, 1.0, 10.0});
-  expect_refused(along_first<2>(uneven), 12.0,
-                 "axis 0 (x) has a step of 9, from 1 to 10, and the period 12; expected steps of less than half the");
+  expect_refused(
+      along_first<2>(uneven), 12.0,
+      "the period of axis 0 (x) is 12, and the step from 1 to 10 is 9; expected steps of less than half the");
   const Axis even = Axis::uniform(4, 0.0, 1.0);  // its step across the seam
-  expect_refused(along_first<3>(even), 10.0, "axis 0 (x) has a step of 7, from 3 to 10, and the period 10");
-  expect_refused(along_first<4>(even), 6.0, "axis 0 (x) has a step of 3, from 3 to 6, and the period 6");
+  expect_refused(along_first<3>(even), 10.0,
+                 "the period of axis 0 (x) is 10, and the step across the seam, from 3 to 10, is 7");
+  expect_refused(along_first<4>(even), 6.0,
+                 "the period of axis 0 (x) is 6, and the step across the seam, from 3 to 6, is 3");
   const Axis descending = Axis::uniform(4, 0.0, -1.0);
-  expect_refused(along_first<2>(descending), 10.0, "axis 0 (x) has a step of 7, from -3 to -10, and the period 10");
+  expect_refused(along_first<2>(descending), 10.0,
+                 "the period of axis 0 (x) is 10, and the step across the seam, from -3 to -10, is 7");
 }
 
 TEST(Division, In5dStepsMayBeLongerThanHalfAPeriod) {

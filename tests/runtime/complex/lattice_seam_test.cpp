@@ -25,6 +25,7 @@
 #include "lattice/lattice_in_time.hpp"
 #include "lattice/periodic_lattice.hpp"
 #include "periodic/periodic_layers.hpp"
+#include "tegl/facet_hierarchy.hpp"
 #include "tegl/lattice.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/slice.hpp"
@@ -352,6 +353,100 @@ TEST(LatticeSeam, CutsAcrossAPeriodAreThoseOfDataFromAnotherStart) {
   test.operator()<4>(Lattice::fcc_in_time, {8, 8, 8, 8});
 }
 
+using Place4 = std::array<std::int64_t, 4>;
+
+/// The places of vertices modulo periods of 1, moved by `by`, as whole numbers.
+std::vector<Place4> places_moved(const Buffer<std::array<double, 4>>& vertices, const std::array<double, 4>& by) {
+  constexpr std::int64_t kParts = 1'000'000;
+  std::vector<Place4> places;
+  for (const auto& vertex : vertices) {
+    Place4& place = places.emplace_back();
+    for (int a = 0; a < 4; ++a) place[a] = (std::llround((vertex[a] + by[a]) * kParts) % kParts + kParts) % kParts;
+  }
+  return places;
+}
+
+/// The contour's polyhedra in the cells, by the places of their points.
+std::set<std::set<Place4>> polyhedra_of(const FacetHierarchy<4, double>& facets, const std::array<double, 4>& by) {
+  const std::vector<Place4> places = places_moved(facets.vertices, by);
+  std::set<std::set<Place4>> polyhedra;
+  for (std::size_t f = 0; f < facets.count(3); ++f) {
+    std::set<Place4> points;
+    for (const Index p : facets.points_of(3, f)) points.insert(places[p]);
+    EXPECT_TRUE(polyhedra.insert(points).second);
+  }
+  return polyhedra;
+}
+
+/// Simplices whose points on edges are not all in one polyhedron.
+std::size_t count_beyond_polyhedra(const Contour<4, double>& contour, const std::vector<Place4>& places,
+                                   const std::set<std::set<Place4>>& polyhedra) {
+  std::map<Place4, std::vector<const std::set<Place4>*>> at;
+  for (const std::set<Place4>& polyhedron : polyhedra)
+    for (const Place4& point : polyhedron) at[point].push_back(&polyhedron);
+  return static_cast<std::size_t>(
+      std::count_if(contour.simplices.begin(), contour.simplices.end(), [&](const auto& simplex) {
+        std::set<Place4> points;
+        for (const Index v : simplex)
+          if (at.contains(places[v])) points.insert(places[v]);  // others are inside of a cell
+        if (points.empty()) return false;
+        const auto& beside = at.at(*points.begin());
+        return std::none_of(beside.begin(), beside.end(), [&](const std::set<Place4>* each) {
+          return std::includes(each->begin(), each->end(), points.begin(), points.end());
+        });
+      }));
+}
+
+TEST(LatticeSeam, CompactContoursOfMovedSamplesOnD4DifferInDiagonalsOnly) {
+  constexpr std::array<std::size_t, 4> kSizes = {8, 8, 8, 8}, kMoved = {3, 1, 2, 4};  // layers by an even number
+  constexpr double kIsovalue = 0.05;
+  const auto image = sampled_on_lattice<4>(Lattice::d4, grid_of_torus<4>(kSizes), [](auto x, const auto&, const auto&) {
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    double sum = 0.4 * std::cos(kTurn * (x[0] - x[3]));
+    for (int a = 0; a < 4; ++a) sum += (0.5 + 0.1 * a) * std::sin(kTurn * x[a] + a);
+    return sum;
+  });
+  OwnedImage<double, 4> moved = image;
+  std::array<double, 4> by{};
+  for (int a = 0; a < 4; ++a) by[a] = static_cast<double>(kMoved[a]) / 8.0;
+  std::size_t i = 0;
+  detail::for_each_sample<4>(kSizes, [&](std::array<std::size_t, 4> index) {
+    for (int a = 0; a < 4; ++a) index[a] = (index[a] + kMoved[a]) % kSizes[a];
+    moved.values[i++] = image.view()(index);
+  });
+  const auto periods = periods_along<4>(15u);
+  const auto polyhedra = polyhedra_of(extract_facets<double>(image.view(), Lattice::d4, kIsovalue, {}, periods), {});
+  EXPECT_GT(polyhedra.size(), 1000u);
+  EXPECT_EQ(polyhedra, polyhedra_of(extract_facets<double>(moved.view(), Lattice::d4, kIsovalue, {}, periods), by));
+
+  for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
+    const bool is_compact = triangulation == Triangulation::compact;
+    SCOPED_TRACE(is_compact ? "compact" : "barycentric");
+    ExtractOptions options;
+    options.triangulation = triangulation;
+    const auto a = extract_lattice<double>(image.view(), Lattice::d4, kIsovalue, options, periods);
+    const auto b = extract_lattice<double>(moved.view(), Lattice::d4, kIsovalue, options, periods);
+    auto places_a = places_moved(a.vertices, {}), places_b = places_moved(b.vertices, by);
+    EXPECT_EQ(count_beyond_polyhedra(a, places_a, polyhedra), 0u);
+    EXPECT_EQ(count_beyond_polyhedra(b, places_b, polyhedra), 0u);
+    std::sort(places_a.begin(), places_a.end());
+    std::sort(places_b.begin(), places_b.end());
+    EXPECT_EQ(places_a, places_b);
+    EXPECT_EQ(a.simplices.size() == b.simplices.size(), !is_compact);
+    // without diagonals, sizes are the same, those of cuts too
+    double farthest = std::abs(measure(a).size / measure(b).size - 1.0);
+    EXPECT_EQ(farthest < 1e-12, !is_compact) << farthest;
+    for (int axis = 0; axis < 4; ++axis)
+      for (const double place : {0.02, 0.13, 0.4, 0.77}) {
+        const double size = measure(slice(a, Hyperplane<4>::across(axis, place))).size;
+        const double of_moved = measure(slice(b, Hyperplane<4>::across(axis, place - by[axis]))).size;
+        farthest = std::max(farthest, std::abs(of_moved / size - 1.0));
+      }
+    EXPECT_LT(farthest, is_compact ? 0.05 : 1e-9);
+    EXPECT_EQ(farthest < 1e-9, !is_compact) << farthest;
+  }
+}
+
 TEST(LatticeSeam, RulesByTheDataGiveManifolds) {
   for_each_noise([]<int N>(Lattice lattice, const OwnedImage<double, N>& image) {
     for (const Ambiguity ambiguity : kAllRules)
@@ -374,6 +469,54 @@ TEST(LatticeSeam, RulesByTheDataGiveManifolds) {
           EXPECT_EQ(check(low).euler, check(contour).euler);
         }
   });
+}
+
+/// The largest extent of a simplex along an axis of period 1, with its vertices beside its first one.
+template <int N>
+double largest_extent(const Contour<N, double>& contour, int axis) {
+  double largest = 0.0;
+  for (const auto& simplex : contour.simplices) {
+    double low = 0.0, high = 0.0;
+    for (const Index v : simplex) {
+      double beside = contour.vertices[v][axis] - contour.vertices[simplex[0]][axis];
+      beside -= std::round(beside);
+      low = std::min(low, beside);
+      high = std::max(high, beside);
+    }
+    largest = std::max(largest, high - low);
+  }
+  return largest;
+}
+
+// At the first and last layer, prisms over pyramids have vertices of their own in hexahedra, some of them across the
+// seam.
+TEST(LatticeSeam, SimplicesOfPrismsOverEndPyramidsStayOnOneSideOfTheSeam) {
+  for (const std::array<std::size_t, 4>& sizes : {std::array<std::size_t, 4>{4, 4, 4, 3}, {5, 3, 3, 6}, {3, 6, 5, 3}}) {
+    const auto image = sampled_on_lattice<4>(Lattice::fcc_in_time, grid_of_torus<4>(sizes), noise_everywhere<4>(2));
+    for (const Ambiguity ambiguity : kAllRules)
+      for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
+        for (const unsigned axes : {1u, 8u, 11u}) {  // never that of the layers
+          SCOPED_TRACE(testing::Message() << "rule " << static_cast<int>(ambiguity) << " periods " << axes);
+          ExtractOptions options;
+          options.ambiguity = ambiguity;
+          options.triangulation = triangulation;
+          options.close = true;
+          const auto contour =
+              extract_lattice<double>(image.view(), Lattice::fcc_in_time, 0.5, options, periods_along<4>(axes));
+          EXPECT_EQ(0u, expect_oriented_manifold(contour).boundary_simplices);
+          (void)expect_oriented_manifold(unroll(contour).contour);
+          for (int a = 0; a < 4; ++a) {
+            if ((axes >> a & 1u) == 0) continue;
+            const auto size = static_cast<double>(sizes[static_cast<std::size_t>(a)]);
+            EXPECT_LT(largest_extent(contour, a), 1.001 / size);
+            for (const double steps : {0.3, 1.4, size - 0.3}) {
+              const auto cut = slice(contour, Hyperplane<4>::across(a, steps / size));
+              EXPECT_EQ(0u, expect_oriented_manifold(cut).boundary_simplices) << steps << " along axis " << a;
+              EXPECT_TRUE(measure(cut).content.has_value());
+            }
+          }
+        }
+  }
 }
 
 TEST(LatticeSeam, AtMissingValuesOnTheSeamTheContourIsAManifold) {
@@ -518,6 +661,49 @@ TEST(LatticeSeam, BadPeriodsAreRefused) {
           1.25);
   refused(Lattice::fcc_in_time, std::array<std::size_t, 4>{4, 4, 7, 4}, 4u, "axis 2 (z) is periodic and has 7 layers");
   refused(Lattice::fcc_in_time, std::array<std::size_t, 4>{4, 4, 6, 2}, 8u, "axis 3 (t) is periodic and has 2 samples");
+}
+
+/// A sphere on layers at these places of a period of 1, from another layer on.
+Contour<3, double> sphere_between(Lattice lattice, const std::vector<double>& layers, std::size_t start = 0) {
+  std::vector<double> places;
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    places.push_back(layers[(start + k) % layers.size()] + (start + k < layers.size() ? 0.0 : 1.0));
+  Grid<3> grid = grid_of_torus<3>({12, 12, layers.size()});
+  grid.axes[2] = Axis::rectilinear(places);
+  const auto image = sampled_on_lattice<3>(lattice, grid, [](const std::array<double, 3>& x, const auto&, const auto&) {
+    return 0.4 - std::hypot(std::remainder(x[0] - 0.5, 1.0), std::remainder(x[1] - 0.5, 1.0),
+                            std::remainder(x[2] - 0.1, 1.0));
+  });
+  return extract_lattice<double>(image.view(), lattice, 0.0, {}, periods_along<3>(7u));
+}
+
+TEST(LatticeSeam, CellsAreShorterThanHalfAPeriod) {
+  for (const Lattice lattice : {Lattice::fcc, Lattice::bcc}) {
+    // two steps of 0.22 and 0.27, anywhere; at most two layers of a cell are as far apart
+    const std::vector<double> layers = {0.0, 0.22, 0.49, 0.6, 0.7, 0.85};
+    const auto expected = sphere_between(lattice, layers);
+    EXPECT_GT(expected.simplices.size(), 100u);
+    for (const std::size_t start : {2u, 4u}) {
+      const auto contour = sphere_between(lattice, layers, start);
+      EXPECT_NEAR(measure(contour).size, measure(expected).size, 1e-9);
+      EXPECT_EQ(check(contour).euler, check(expected).euler);
+      EXPECT_EQ(check(contour).components, check(expected).components);
+      EXPECT_NEAR(measure(unroll(contour).contour).size, measure(expected).size, 1e-9);
+    }
+    const auto expect_refused = [&](const std::vector<double>& bad, const std::string& text) {
+      const std::string whole = "lattice " + std::string(name_of(lattice)) + ": the period of axis 2 (z)" + text;
+      expect_error(ErrorCode::InvalidArgument, whole, [&] { (void)sphere_between(lattice, bad); });
+    };
+    expect_refused({0.0, 0.25, 0.51, 0.6, 0.7, 0.85}, " is 1, and two steps, from 0 to 0.51, are 0.51; expected two");
+    expect_refused({0.0, 0.1, 0.2, 0.3, 0.4, 0.7}, " is 1, and two steps, from 0.4 to 1, are 0.6");
+  }
+  // a period in another unit, of uneven layers
+  Grid<3> grid = grid_of_torus<3>({4, 4, 8});
+  grid.axes[2] = Axis::rectilinear({0.0, 0.1, 0.25, 0.4, 0.5, 0.6, 0.7, 0.85});
+  const auto image = sampled_on_lattice<3>(Lattice::fcc, grid, noise_everywhere<3>(5));
+  expect_error(ErrorCode::InvalidArgument, "lattice fcc: the period of axis 2 (z) is 100, and", [&] {
+    (void)extract_lattice(image.view(), Lattice::fcc, 0.5, {}, {1.0, 1.0, 100.0});
+  });
 }
 
 /// Errors of size and content, and the Euler characteristic, at spacings of which each is half of the one before.

@@ -127,6 +127,7 @@ void expect_streamed_by_cells(Lattice lattice, const std::array<std::size_t, N>&
   Grid<N> grid;
   for (int a = 0; a < N; ++a) grid.axes[a] = Axis::uniform(sizes[a], -1.0, 0.1);
   if (seed % 2 == 0) grid.linear[0][1] = 0.3;
+  if (seed % 3 == 0) grid.axes[N - 1] = Axis::uniform(sizes[N - 1], 1.0, -0.1);
   const auto image = sampled_on_lattice<N>(lattice, grid, noise_everywhere<N>(seed));
   for (const Ambiguity ambiguity : rules)
     for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {
@@ -163,6 +164,7 @@ TEST(StreamedLattice, ByCellsIsTheContourInMemory) {
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 9}, 4, {Ambiguity::high, Ambiguity::mean});
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {33, 30, 31, 4}, 5, {Ambiguity::saddle});
   expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 2}, 6, {Ambiguity::high});
+  expect_streamed_by_cells<4>(Lattice::fcc_in_time, {20, 20, 20, 9}, 9, {Ambiguity::low, Ambiguity::mean});
 }
 
 template <int N>
@@ -439,6 +441,13 @@ TEST(StreamedLattice, BadOptionsAndGridsAreRefused) {
   expect_error(ErrorCode::InvalidArgument, "axis 2 (z) is periodic and has 7 layers; expected an even number", [&] {
     extract_lattice_streamed<float>(seven, Lattice::fcc, 0.5, other, {}, AxisPeriods<3>{0.0, 0.0, 7.0});
   });
+  Grid<3> uneven = Grid<3>::unit({4, 4, 6});
+  uneven.axes[2] = Axis::rectilinear({0.0, 1.0, 2.5, 3.0, 4.0, 5.0});
+  FunctionLayers<double, 3> six(uneven, [](std::size_t, double*) {});
+  expect_error(ErrorCode::InvalidArgument, "the period of axis 2 (z) is 100, and two steps, from 4 to 100, are 96",
+               [&] {
+                 extract_lattice_streamed<float>(six, Lattice::fcc, 0.5, other, {}, AxisPeriods<3>{0.0, 0.0, 100.0});
+               });
 }
 
 }  // namespace

@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "compare.hpp"
 #include "complex/complex_cases.hpp"
 #include "complex/lattice_image.hpp"
 #include "errors.hpp"
@@ -27,6 +28,7 @@
 #include "lattice/lattice_cells.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/measure.hpp"
+#include "tegl/slice.hpp"
 
 namespace tegl {
 namespace {
@@ -340,6 +342,45 @@ TEST(Lattice, BadGridsAreRefused) {
   expect_error(ErrorCode::InvalidArgument, "sobel normals on a lattice; expected gradient",
                [&] { (void)extract_lattice(image.view(), Lattice::fcc, 0.5, options); });
   EXPECT_EQ(name_of(Lattice::bcc), "bcc");
+  for (const int axis : {0, 1}) {  // tetrahedra of one row have edges in common only
+    OwnedImage<double, 3> row;
+    std::array<std::size_t, 3> sizes = {4, 4, 4};
+    sizes[static_cast<std::size_t>(axis)] = 1;
+    row.grid = Grid<3>::unit(sizes);
+    row.values.resize(16);
+    const std::string expected =
+        fmt::format("lattice bcc: axis {} ({}) has 1 sample; expected at least 2", axis, axis == 0 ? "x" : "y");
+    expect_error(ErrorCode::InvalidArgument, expected, [&] { (void)lattice_complex(row.view(), Lattice::bcc); });
+    expect_error(ErrorCode::InvalidArgument, expected, [&] { (void)extract_lattice(row.view(), Lattice::bcc, 0.5); });
+  }
+}
+
+TEST(Lattice, TimesOfFccMayDescend) {
+  auto image = lattice_image<4>(Lattice::fcc_in_time, 6, noise<4>(3));
+  const std::size_t steps = image.grid.axes[3].size(), size = image.values.size() / steps;
+  image.grid.axes[3] = Axis::uniform(steps, 2.0, -0.5);
+  Grid<3> space;
+  std::copy_n(image.grid.axes.begin(), 3, space.axes.begin());
+  for (const bool by_map : {false, true}) {
+    if (by_map) {  // the same times
+      image.grid.axes[3] = Axis::uniform(steps, -2.0, 0.5);
+      image.grid.linear[3][3] = -1.0;
+    }
+    for (const Ambiguity ambiguity : kAllRules) {
+      ExtractOptions options;
+      options.ambiguity = ambiguity;
+      const auto contour = extract_lattice<double>(image.view(), Lattice::fcc_in_time, 0.5, options);
+      EXPECT_GT(contour.simplices.size(), 100u);
+      expect_closed_manifold(contour);
+      EXPECT_GT(measure(contour).content.value(), 0.0);
+      for (std::size_t k = 1; k + 1 < steps; ++k) {
+        const Image<double, 3> step(image.values.data() + k * size, space);
+        const double time = 2.0 - 0.5 * static_cast<double>(k);
+        EXPECT_TRUE(same_surface(extract<double>(lattice_complex(step, Lattice::fcc), 0.5, options),
+                                 slice(contour, Hyperplane<4>::across(3, time))));
+      }
+    }
+  }
 }
 
 /// Expects cells in an image of the least layers, and an error with one layer less.

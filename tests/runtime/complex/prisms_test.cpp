@@ -27,6 +27,7 @@
 #include "polytope/polygon_prisms.hpp"
 #include "polytope/polytopes.hpp"
 #include "tegl/cell_index.hpp"
+#include "tegl/check.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/slice.hpp"
@@ -284,6 +285,20 @@ TEST(Prisms, CapsCloseContoursAtTheBorder) {
         const auto contour = extract(swept, 0.5, options);
         expect_closed_manifold(contour);
         EXPECT_EQ((ContourSize{contour.vertices.size(), contour.simplices.size()}), count(swept, 0.5, options));
+        const auto in_doubles = extract<double>(swept, 0.5, options);
+        for (std::size_t k = 0; k < kPrismTimes.size(); ++k) {
+          Complex<3> step = mesh.complex();
+          step.set_values(layer_of(values, mesh.points.size(), k));
+          const auto closed = extract<double>(step, 0.5, options);
+          const auto cut = slice(in_doubles, Hyperplane<4>::across(3, kPrismTimes[k]));
+          if (a != Ambiguity::mean && a != Ambiguity::saddle) {
+            EXPECT_TRUE(same_surface(closed, cut));
+            continue;
+          }
+          // in hexahedra with a tunnel, caps may add the mean of a quadrilateral to the other triangles
+          EXPECT_NEAR(measure(closed).content.value(), measure(cut).content.value(), 1e-5);
+          EXPECT_EQ(check(closed).euler, check(cut).euler);
+        }
       }
     // all high: the caps are the border, with the volume of the mesh
     swept.set_values(std::vector<double>(values.size(), 1.0));

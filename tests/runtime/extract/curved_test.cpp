@@ -469,6 +469,20 @@ TEST(CurvedSeams, GivenPeriodsFollowTheCoordinateThatGrowsOrDescends) {
   }
 }
 
+TEST(CurvedSeams, PeriodsInAnotherUnitAreErrors) {
+  std::vector<CurvedAxis> curved;
+  const auto image = globe(0.0, curved);
+  const auto seams_of = [&](double period) {
+    return find_seams<2>(image.grid, curved, std::array{0}, std::array{period});
+  };
+  expect_error(ErrorCode::InvalidArgument,
+               "the period of axis 0 (x), a curved axis, is 1000, and the step across the seam is 650, in the mean",
+               [&] { (void)seams_of(1000.0); });
+  expect_error(ErrorCode::InvalidArgument, "is 6.28, and the step across the seam is 343.72",
+               [&] { (void)seams_of(6.28); });
+  EXPECT_EQ(seams_of(500.0)[0].vector, (Vector<2>{500.0, 0.0}));  // a gap, but a shorter one
+}
+
 TEST(CurvedSeams, WrongSeamsAreErrors) {
   std::vector<CurvedAxis> curved;
   const auto image = globe(0.0, curved);

@@ -305,6 +305,69 @@ TEST(Periodic, UnevenAxesHaveTheirOwnStepAcrossTheSeam) {
   }
 }
 
+/// A tube along x whose samples lie at these places along it.
+OwnedImage<float, 3> tube_along(const Axis& along) {
+  OwnedImage<float, 3> image;
+  image.grid.axes = {along, Axis::uniform(24, 0.0, 1.0), Axis::uniform(24, 0.0, 1.0)};
+  for (int k = 0; k < 24; ++k)
+    for (int j = 0; j < 24; ++j)
+      for (std::size_t i = 0; i < along.size(); ++i)
+        image.values.push_back(static_cast<float>(8.0 - std::hypot(j - 11.5, k - 11.5)));
+  return image;
+}
+
+template <class Real>
+void expect_contour_of_one_sample_more(std::vector<double> places, double period) {
+  SCOPED_TRACE(testing::PrintToString(places));
+  const double first = places.front(), end = first + (places.back() < first ? -period : period);
+  const auto contour = wrapped<Real>(tube_along(Axis::rectilinear(places)), {period, 0.0, 0.0}, 0.0);
+  places.push_back(end);
+  const auto image = tube_along(Axis::rectilinear(places));
+  const auto expected = extract<Real>(image.view(), 0.0);
+  EXPECT_NEAR(measure(contour).size, measure(expected).size, 1e-5 * measure(expected).size);
+  const auto unrolled = unroll(contour).contour;
+  EXPECT_NEAR(measure(unrolled).size, measure(expected).size, 1e-5 * measure(expected).size);
+  for (const double share : {0.06, 0.34, 0.5, 0.77, 0.97}) {
+    const auto at = Hyperplane<3>::across(0, first + share * (end - first));
+    const double size = measure(slice(expected, at)).size;
+    EXPECT_GT(size, 40.0);
+    EXPECT_NEAR(measure(slice(contour, at)).size, size, 1e-5 * size) << share;
+    EXPECT_NEAR(measure(slice(unrolled, at)).size, size, 1e-5 * size) << share;
+  }
+}
+
+TEST(Periodic, StepsOfAlmostHalfAPeriodHaveTheirOwnLength) {
+  const std::vector<std::vector<double>> axes = {
+      {0.0, 0.4999, 0.7}, {0.0, 0.2, 0.5001}, {3.0, 2.6, 2.4999}, {0.0, 0.1, 0.59, 0.6}, {0.0, 1.0 / 3, 2.0 / 3}};
+  for (const auto& places : axes) {
+    expect_contour_of_one_sample_more<float>(places, 1.0);
+    expect_contour_of_one_sample_more<double>(places, 1.0);
+  }
+}
+
+TEST(Periodic, StepsOfHalfAPeriodAndMoreAreRefused) {
+  const auto refuses = [](const std::string& part, const Axis& axis, double period) {
+    const auto image = tube_along(axis);
+    const AxisPeriods<3> periods = {period, 0.0, 0.0};
+    expect_error(ErrorCode::InvalidArgument, part, [&] { (void)wrapped(image, periods, 0.0); });
+    expect_error(ErrorCode::InvalidArgument, part, [&] { (void)count_periodic(image.view(), periods, 0.0); });
+  };
+  const auto along = [](std::vector<double> places) { return Axis::rectilinear(std::move(places)); };
+  refuses("the period of axis 0 (x) is 1, and the step from 0.3 to 0.8 is 0.5; expected steps of less than half the",
+          along({0.0, 0.1, 0.2, 0.3, 0.8}), 1.0);
+  refuses("the step from 9 to 1 is 8; expected", along({10.0, 9.0, 1.0}), 12.0);
+  // the last step, across the seam: often a period in another unit
+  const Axis radians = Axis::uniform(36, 0.0, kTurn / 36);
+  refuses("the period of axis 0 (x) is 360, and the step across the seam, from 6.1", radians, 360.0);
+  refuses("or a period in the unit of the axis, such as 6.28319", radians, 360.0);
+  refuses("the step across the seam, from 3 to 6, is 3; expected", Axis::uniform(4, 0.0, 1.0), 6.0);
+  refuses("the step across the seam, from -3 to -10, is 7; expected", Axis::uniform(4, 0.0, -1.0), 10.0);
+  const auto last = torus_image<4>({3, 3, 3, 3}, noise_of<4>(1));
+  expect_error(ErrorCode::InvalidArgument, "the period of axis 3 (t) is 100, and the step across the seam", [&] {
+    (void)wrapped(last, {0.0, 0.0, 0.0, 100.0}, 0.0);
+  });
+}
+
 /// With all axes periodic there is nothing to close; but vertices at the seam are then found by bits in all layers.
 template <int N>
 void expect_the_same_closed(const OwnedImage<float, N>& image) {
@@ -539,6 +602,8 @@ TEST(Periodic, LongitudesHaveAPeriodOf360) {
   refuses("its samples span 30, and the gap behind them is 330; expected less than 180, or a given period, such as 40",
           Axis::uniform(4, 120.0, 10.0));
   refuses("the gap behind them is 180", Axis::uniform(3, 0.0, 90.0));
+  refuses("axis 0 (lon) is 360, and the step from 20 to 215 is 195; expected steps of less than half the period",
+          Axis::rectilinear({0.0, 20.0, 215.0, 270.0}));
   refuses("has 2 samples", Axis::uniform(2, 0.0, 180.0));
 }
 
@@ -556,7 +621,7 @@ TEST(Periodic, BadPeriodsAndOptionsAreRefused) {
   options.estimator.choose = [](const AmbiguousFace&) { return tile::Choice::low; };
   refuses("Ambiguity::custom", {1.0, 0.0}, options);
   const auto contour = wrapped(torus_image<3>({5, 4, 5}, gyroid), all_periodic<3>(), 0.0);
-  const Hyperplane<3> oblique{{1.0, 0.5, 0.0}, 0.5};
+  const Hyperplane<3> oblique{{1.0, std::numbers::phi, 0.0}, 0.5};
   EXPECT_FALSE(cuts_wrapped<3>(contour.periods, oblique));
   EXPECT_TRUE(cuts_wrapped<3>(contour.periods, Hyperplane<3>::across(1, 0.5)));
   expect_error(ErrorCode::InvalidArgument, "across one of its periods", [&] { (void)slice(contour, oblique); });

@@ -247,6 +247,10 @@ TEST(StreamedPeriodic, BadPeriodsAreRefused) {
   Collector<2, double> sink;
   for (const double period : {-1.0, 0.5, std::numeric_limits<double>::infinity()})
     EXPECT_THROW(extract_streamed<double>(layers, 0.0, sink, {}, {period, 0.0}), Error);
+  expect_error(ErrorCode::InvalidArgument, "the period of axis 1 (y) is 1.7, and the step across the seam, from 0.8",
+               [&] {
+                 extract_streamed<double>(layers, 0.0, sink, {}, {0.0, 1.7});
+               });
   ExtractOptions custom;
   custom.ambiguity = Ambiguity::custom;
   EXPECT_THROW(extract_streamed<double>(layers, 0.0, sink, custom, {1.0, 0.0}), Error);

@@ -131,6 +131,9 @@ TEST(PeriodicFacets, BadPeriodsAndTriangulationsAreRefused) {
   for (const double period : {-1.0, 0.5}) {
     EXPECT_THROW((void)facets_of<3>(image, {period, 0.0, 0.0}, 0.0, {}), Error);
   }
+  expect_error(ErrorCode::InvalidArgument, "the period of axis 0 (x) is 1.7, and the step across the seam", [&] {
+    (void)facets_of<3>(image, {1.7, 0.0, 0.0}, 0.0, {});
+  });
   ExtractOptions custom;
   custom.ambiguity = Ambiguity::custom;
   EXPECT_THROW((void)facets_of<3>(image, all_periodic<3>(), 0.0, custom), Error);

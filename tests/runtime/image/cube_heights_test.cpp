@@ -13,7 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "image/cell_heights.hpp"
+#include "image/rays_of_tiles.hpp"
 #include "image/row_source.hpp"
+#include "only_targets.hpp"
 #include "tegl/tile/corners.hpp"
 
 namespace tegl::detail {
@@ -209,6 +211,55 @@ TEST(TileHeights, OfManyRaysAreThoseOfEach) {
     for (std::size_t r = 0; r < ends.size(); ++r)
       ASSERT_EQ(tile.level(ends[r]), rays.levels[r]) << "tile " << i << ", ray " << r;
   }
+}
+
+void expect_points_on_rays_of_each_tile() {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  RaysOfTiles rays;
+  for (int i = 0; i < 500; ++i) {
+    struct Tile {
+      TileHeights<4> heights;
+      TileBox box;
+      std::vector<std::array<double, 4>> ends;
+      std::size_t first;
+    };
+    std::vector<Tile> tiles;
+    const double epsilon = i % 3 == 0 ? 0.125 : 0.0;
+    // as many tiles as fit
+    for (;;) {
+      std::array<double, 16> heights;
+      for (double& height : heights) height = uniform(random);
+      if (random() % 16 == 0) heights[random() % 16] = std::numeric_limits<double>::infinity();
+      TileBox box;
+      for (std::size_t a = 0; a < 4; ++a) box.from[a] = 10 * uniform(random), box.to[a] = box.from[a] + uniform(random);
+      std::vector<std::array<double, 4>> ends(1 + random() % (i % 16 == 0 ? TesseractRays::kMost : 20));
+      if (!rays.has_room(ends.size())) break;
+      tiles.push_back({TileHeights<4>(heights, epsilon), box, ends, 0});
+      tiles.back().first = rays.add(tiles.back().heights.products(), box, ends.size());
+      for (std::size_t r = 0; r < ends.size(); ++r)
+        for (std::size_t a = 0; a < 4; ++a) {
+          const double end = random() % 2 == 0 ? static_cast<double>(random() % 2) : 0.5 + 0.5 * uniform(random);
+          rays.ends[a][tiles.back().first + r] = tiles.back().ends[r][a] = end;
+        }
+    }
+    place_on_rays(epsilon, rays);
+    for (const Tile& tile : tiles)
+      for (std::size_t r = 0; r < tile.ends.size(); ++r) {
+        const double level = tile.heights.level(tile.ends[r]);
+        for (std::size_t a = 0; a < 4; ++a) {
+          const double from = tile.box.from[a], to = tile.box.to[a];
+          const double x = 0.5 + level * (tile.ends[r][a] - 0.5);
+          const double point = std::clamp(from + x * (to - from), std::min(from, to), std::max(from, to));
+          ASSERT_EQ(x >= 1.0 ? to : point, rays.ends[a][tile.first + r]) << "case " << i << ", ray " << r;
+        }
+      }
+    rays.clear();
+  }
+}
+
+TEST(TileHeights, PointsOnRaysOfSeveralTilesAreThoseOfEach) {
+  test::with_all_targets(expect_points_on_rays_of_each_tile);
 }
 
 /// Heights of kind 0 to 3: any; of one size; of few values; any, a few of them huge or infinite.

@@ -12,6 +12,7 @@
 
 #include "fields.hpp"
 #include "simplified.hpp"
+#include "tegl/check.hpp"
 #include "tegl/deviation.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/io.hpp"
@@ -153,6 +154,22 @@ TEST(SimplifyFlat, PlanesHaveNoError) {
     EXPECT_LE(*stats.error(), 1e-12);
     EXPECT_LE(stats.rounds, 5u);
   }
+}
+
+/// A hyperplane through grid points, up to rounding, and the caps around it: a convex polytope with tetrahedra of no
+/// content in its ridges. Neither halves nor prisms bound their distances, but their neighbours do.
+TEST(SimplifyFlat, TetrahedraOfNoContentInFoldsHaveTheErrorOfTheirNeighbours) {
+  const auto image = sample_field<double, 4>(
+      Grid<4>::unit({6, 6, 2, 3}), [](const Point<4>& x) { return 0.1 * x[0] + 0.05 * x[1] - 0.42 + 0.07 * x[3]; });
+  ExtractOptions extraction;
+  extraction.close = true;
+  const auto contour = extract<double>(image.view(), 0.0, extraction);
+  ASSERT_GT(check(contour).degenerate_simplices, 0u);
+  SimplifyOptions<4> options;
+  options.ratio = 0.5;
+  const SimplifyStats stats = simplified(contour, options);
+  EXPECT_LE(*stats.error(), 1e-9);
+  EXPECT_LE(stats.rounds, 12u);
 }
 
 TEST(SimplifyFlat, WarmWaterWithCapsIsNearerTheMoreIsLeft) {

@@ -535,7 +535,8 @@ TEST(SimplifyErrors, CanBeCancelledAtAnyReport) {
     simplify(contour, options);
     const std::size_t all = std::exchange(reports, 0);
     ASSERT_GE(all, 20u);
-    for (last = 1; last <= all; last += all / 20, reports = 0) {
+    // Only the calling thread reports, so beside others there may be fewer reports in the next run.
+    for (last = 1; last <= (threads == 1 ? all : all / 3); last += all / 20, reports = 0) {
       expect_error(ErrorCode::Cancelled, "cancelled", [&] { simplify(contour, options); });
       EXPECT_EQ(reports, last);
     }

@@ -63,8 +63,8 @@ struct ImageInfo {
   std::string world_frame = {};                     ///< such as "RAS", "LPS"; empty if unknown
   std::optional<ValueType> stored_type = {};        ///< value type in the file, before any conversion; none: float16
   std::vector<AxisDirection> axis_directions = {};  ///< netCDF: one per axis of the image; else empty
-  /// netCDF: coordinates in arrays of two or more dimensions (CF conventions, section 5.2), for tegl/curved.hpp. The
-  /// grid has indices on these axes. Empty if the grid's axes are straight.
+  /// netCDF: coordinates in arrays of two or more dimensions (CF conventions, section 5.2), for tegl/curved.hpp; VTK:
+  /// the points of a StructuredGrid. The grid has indices on these axes. Empty if the grid's axes are straight.
   std::vector<CurvedAxis> curved = {};
   /// VTK's rectilinear grids with values of cells: coordinates of the cells' faces by axis, one more than samples; for
   /// extract_cells. Empty, or without an axis: the faces are midway between the samples.
@@ -140,7 +140,7 @@ struct ReadImageOptions {
 /// `keep_stored`). Missing values of netCDF become NaN, in float, or in double if float cannot represent the values.
 /// netCDF variables on curved grids, with longitude and latitude (or a vertical coordinate) in arrays of two or more
 /// dimensions, have indices on those axes, and the arrays in ImageInfo::curved; longitudes are continued across 360
-/// degrees, and samples with unknown coordinates are missing.
+/// degrees, and samples with unknown coordinates are missing. So have structured grids of VTK, by their points.
 ///
 /// Errors, all naming the file: FileNotFound, MalformedFile (damaged, truncated or inconsistent; compressed data are
 /// checked to the last byte), UnsupportedFormat, UnsupportedData (colours, vectors, other than 2 to 4 axes; a file of

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Based on: the Euclidean algorithm, on the heights of periods over a hyperplane.
+#include "cut/crossed_periods.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "base/orthonormal.hpp"
+#include "tegl/slice.hpp"
+
+namespace tegl {
+namespace detail {
+namespace {
+
+constexpr double kRounding = 1e-6;
+/// Multiples of periods in a basis. With more, real numbers would seem to be multiples of one height.
+constexpr double kMostTimes = 32;
+
+/// The vectors of periods without their parts that are rounding. A part that carries a share of its period (the product
+/// with the dual vector does not depend on units) is none.
+template <int N>
+std::vector<Vector<N>> without_rounding(std::span<const Period<N>> periods) {
+  std::vector<Vector<N>> vectors;
+  std::vector<double> lengths;
+  for (const Period<N>& period : periods) {
+    vectors.push_back(period.vector);
+    double square = 0.0;
+    for (const double part : period.vector) square += part * part;
+    lengths.push_back(std::sqrt(square));
+  }
+  for (int a = 0; a < N; ++a) {
+    const auto is_small = [&](std::size_t p, double beside) {
+      return std::abs(vectors[p][a]) <= kRounding * beside && std::abs(vectors[p][a] * periods[p].dual[a]) <= kRounding;
+    };
+    double most = 0.0;
+    bool are_all_small = true;
+    for (std::size_t p = 0; p < periods.size(); ++p) {
+      most = std::max(most, std::abs(vectors[p][a]));
+      are_all_small = are_all_small && is_small(p, lengths[p]);
+    }
+    for (std::size_t p = 0; p < periods.size(); ++p)
+      if (are_all_small || is_small(p, most)) vectors[p][a] = 0.0;
+  }
+  return vectors;
+}
+
+/// The longest part of a vector along each axis.
+template <int N>
+Vector<N> longest_parts(const std::vector<Vector<N>>& vectors) {
+  Vector<N> longest{};
+  for (const Vector<N>& vector : vectors)
+    for (int a = 0; a < N; ++a) longest[a] = std::max(longest[a], std::abs(vector[a]));
+  return longest;
+}
+
+/// Whether all axes that the normal has a part along are combinations of the vectors. If not, cuts would drift along an
+/// axis that is not periodic. Axes are divided by `longest`, so that their units do not matter.
+template <int N>
+bool are_axes_combinations(const Vector<N>& normal, std::vector<Vector<N>> vectors, const Vector<N>& longest) {
+  OrthonormalVectors<N> span;
+  for (Vector<N>& vector : vectors) {
+    double square = 0.0;
+    for (int a = 0; a < N; ++a) {
+      if (longest[a] > 0.0) vector[a] /= longest[a];
+      square += vector[a] * vector[a];
+    }
+    span.add(vector, kRounding * std::sqrt(square));
+  }
+  for (int a = 0; a < N; ++a) {
+    if (normal[a] == 0.0) continue;
+    double square = 0.0;
+    for (const double part : span.rest_of(unit_vector<N>(a))) square += part * part;
+    if (square > kRounding * kRounding) return false;
+  }
+  return true;
+}
+
+/// A basis of the lattice of periods, first the periods themselves.
+template <int N>
+struct LatticeBasis {
+  std::vector<Period<N>> periods;
+  std::vector<Vector<N>> vectors;          ///< without_rounding
+  std::vector<double> heights;             ///< of these
+  std::vector<std::vector<double>> sums;   ///< by basis vector: how many times it has each period of the contour
+  std::vector<std::vector<double>> times;  ///< by basis vector: how many times it is in each period of the contour
+
+  /// Subtracts a multiple of one vector of the basis from another one. Their dual vectors change the other way round.
+  void subtract(std::size_t from, double multiple, std::size_t other) {
+    const auto add = [](auto& sum, const auto& part, double factor) {
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * part[i];
+    };
+    add(periods[from].vector, periods[other].vector, -multiple);
+    add(vectors[from], vectors[other], -multiple);
+    add(sums[from], sums[other], -multiple);
+    heights[from] -= multiple * heights[other];
+    add(periods[other].dual, periods[from].dual, multiple);
+    add(times[other], times[from], multiple);
+    periods[other].start += multiple * periods[from].start;
+  }
+  [[nodiscard]] bool is_small() const {
+    for (const auto* rows : {&sums, &times})
+      for (const std::vector<double>& row : *rows)
+        for (const double factor : row)
+          if (std::abs(factor) > kMostTimes) return false;
+    return true;
+  }
+};
+
+/// Changes a basis until at most one vector has a height above `rounding`: returns its number. None if the heights are
+/// no small multiples of one height.
+template <int N>
+std::optional<std::size_t> reduce_heights(LatticeBasis<N>& basis, double rounding, bool& is_other) {
+  const std::vector<double>& heights = basis.heights;
+  while (true) {
+    std::size_t least = heights.size();
+    for (std::size_t p = 0; p < heights.size(); ++p)
+      if (std::abs(heights[p]) > rounding &&
+          (least == heights.size() || std::abs(heights[p]) < std::abs(heights[least])))
+        least = p;
+    bool are_others_within = true;
+    for (std::size_t p = 0; p < heights.size(); ++p) {
+      if (p == least || !(std::abs(heights[p]) > rounding)) continue;
+      basis.subtract(p, std::round(heights[p] / heights[least]), least);
+      are_others_within = false;
+      is_other = true;
+    }
+    if (!basis.is_small()) return std::nullopt;
+    if (are_others_within) return least;
+  }
+}
+
+}  // namespace
+
+template <int N>
+CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>& family, std::span<const Period<N>> periods) {
+  CrossedPeriods<N> result;
+  LatticeBasis<N> basis{{periods.begin(), periods.end()}, without_rounding<N>(periods), {}, {}, {}};
+  double most = 0.0;
+  for (std::size_t p = 0; p < periods.size(); ++p) {
+    double height = 0.0, sum = 0.0;
+    for (int a = 0; a < N; ++a) {
+      const double part = family.normal()[a] * basis.vectors[p][a];
+      height += part;
+      sum += std::abs(part);
+    }
+    basis.heights.push_back(height);
+    most = std::max(most, sum);
+    std::vector<double>& row = basis.sums.emplace_back(periods.size(), 0.0);
+    row[p] = 1.0;
+  }
+  basis.times = basis.sums;
+  const double rounding = kRounding * most;
+  result.any = std::any_of(basis.heights.begin(), basis.heights.end(),
+                           [&](double height) { return std::abs(height) > rounding; });
+  if (!result.any) return result;
+  const Vector<N> longest = longest_parts<N>(basis.vectors);
+  result.has_cuts = are_axes_combinations<N>(family.normal(), basis.vectors, longest);
+  if (!result.has_cuts) return result;
+  const std::optional<std::size_t> across = reduce_heights(basis, rounding, result.is_other);
+  result.has_cuts = across.has_value();
+  if (!across) return result;
+  for (std::size_t p = 0; p < periods.size(); ++p)
+    if (p != *across) result.within.push_back(basis.periods[p]);
+  result.across = basis.periods[*across];
+  result.times = basis.times[*across];
+  result.height = family.height(result.across.vector);
+  result.is_straight = family.is_across_axis();
+  for (int a = 0; a < N; ++a)
+    if (a != family.dropped_axis() && std::abs(basis.vectors[*across][a]) > kRounding * longest[a])
+      result.is_straight = false;
+  return result;
+}
+
+template <int N>
+double place_modulo(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset) {
+  const double along = crossed.across.vector[family.dropped_axis()], start = crossed.across.start * along;
+  return place_in_period(family.sign() * family.template level<double>(offset), std::min(start, start + along),
+                         std::abs(along));
+}
+
+#define TEGL_INSTANTIATE_CROSSED(N)                                                                   \
+  template CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>&, std::span<const Period<N>>); \
+  template double place_modulo(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);
+TEGL_INSTANTIATE_CROSSED(3)
+TEGL_INSTANTIATE_CROSSED(4)
+TEGL_INSTANTIATE_CROSSED(5)
+#undef TEGL_INSTANTIATE_CROSSED
+
+}  // namespace detail
+
+double place_in_period(double place, double first, double period) {
+  if (!std::isfinite(place) || !(period > 0.0) || !std::isfinite(period)) return place;
+  const double moved = place - std::floor((place - first) / period) * period;
+  return moved >= first + period ? first : std::max(moved, first);
+}
+
+template <int N>
+requires DimensionBetween<N, 3, 5>
+bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods, const Hyperplane<N>& hyperplane) {
+  return detail::crossed_periods<N>(detail::HyperplaneFamily<N>(hyperplane.normal), periods).has_cuts;
+}
+
+template <int N>
+requires DimensionBetween<N, 3, 5> std::optional<CutPeriod<N>> cut_period(
+    std::type_identity_t<std::span<const Period<N>>> periods, const std::type_identity_t<Vector<N>>& normal) {
+  const detail::HyperplaneFamily<N> family(normal);
+  const detail::CrossedPeriods<N> crossed = detail::crossed_periods<N>(family, periods);
+  if (!crossed.any || !crossed.has_cuts) return std::nullopt;
+  CutPeriod<N> period{crossed.across.vector, crossed.height * family.unit(), 0.0, crossed.is_straight};
+  const double start = crossed.across.start * period.length;
+  period.first = std::min(start, start + period.length);
+  if (period.length < 0.0) {
+    period.length = -period.length;
+    for (double& part : period.vector) part = -part;
+  }
+  return period;
+}
+
+#define TEGL_INSTANTIATE_CUT_PERIODS(N)                                            \
+  template bool cuts_wrapped<N>(std::span<const Period<N>>, const Hyperplane<N>&); \
+  template std::optional<CutPeriod<N>> cut_period<N>(std::span<const Period<N>>, const Vector<N>&);
+TEGL_INSTANTIATE_CUT_PERIODS(3)
+TEGL_INSTANTIATE_CUT_PERIODS(4)
+TEGL_INSTANTIATE_CUT_PERIODS(5)
+#undef TEGL_INSTANTIATE_CUT_PERIODS
+
+}  // namespace tegl

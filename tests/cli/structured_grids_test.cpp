@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Structured grids of VTK (.vts) as meshes and, with --curved-grid, as images on curved grids, run as in a shell.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tegl_program.hpp"
+
+namespace tegl::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kAround = 24, kOut = 6;
+
+/// Rings of 24 x 6 points between the radii 1 and 2, in layers along z, with the radius as the value at points.
+/// `of_cells`: arrays of the cells.
+std::string rings_vts(int layers, const std::string& of_cells = "") {
+  std::ostringstream points, values, text;
+  points.precision(17);
+  for (int k = 0; k < layers; ++k)
+    for (int j = 0; j < kOut; ++j)
+      for (int i = 0; i < kAround; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kAround, radius = 1 + 0.2 * j;
+        points << radius * std::cos(angle) << ' ' << radius * std::sin(angle) << ' ' << 0.5 * k << '\n';
+        values << radius << '\n';
+      }
+  text << R"(<VTKFile type="StructuredGrid" version="0.1"><StructuredGrid WholeExtent="0 23 0 5 0 )" << layers - 1
+       << R"("><Piece Extent="0 23 0 5 0 )" << layers - 1
+       << R"("><PointData><DataArray type="Float32" Name="radius" format="ascii">)" << values.str()
+       << "</DataArray></PointData><CellData>" << of_cells
+       << R"(</CellData><Points><DataArray type="Float64" Name="p" NumberOfComponents="3" format="ascii">)"
+       << points.str() << "</DataArray></Points></Piece></StructuredGrid></VTKFile>";
+  return text.str();
+}
+
+/// An array of the cells of three layers of rings, 0 except for one cell.
+std::string array_of_cells(const std::string& name, int other) {
+  std::string text = R"(<DataArray type="UInt8" Name=")" + name + R"(" format="ascii">)";
+  for (int c = 0; c < (kAround - 1) * (kOut - 1) * 2; ++c) text += (c == 7 ? std::to_string(other) : "0") + ' ';
+  return text + "</DataArray>";
+}
+
+class StructuredGrids : public ProgramTest {
+ protected:
+  [[nodiscard]] nlohmann::json run_json(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--iso", "1.55", "--json"});
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return run.json();
+  }
+  void expect_refused(const std::string& file, std::vector<std::string> options, const std::string& message) const {
+    options.insert(options.begin(), {"contour", file, "--iso", "1.55", "-o", path("none.vtkhdf")});
+    const RunResult run = run_tegl(options);
+    EXPECT_NE(run.exit, 0);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  }
+};
+
+TEST_F(StructuredGrids, AreMeshesOrCurvedGridsWithTheSameContours) {
+  for (const int layers : {4, 1}) {
+    SCOPED_TRACE(layers);
+    const std::string file = write("rings.vts", rings_vts(layers)), output = path("out.vtkhdf");
+    const auto mesh = run_json({"contour", file, "-o", output});
+    const auto open = run_json({"contour", file, "--curved-grid", "-o", output});
+    for (const char* const count : {"vertices", "simplices"}) EXPECT_EQ(open[count], mesh[count]) << count;
+    const double size =
+        run_json({"measure", file})["size"];  // between the last points of each ring and the first: none
+    EXPECT_NEAR(size, 2 * std::numbers::pi * 1.55 * 23 / 24 * (layers > 1 ? 1.5 : 1.0), 0.1);
+    EXPECT_NEAR(run_json({"measure", file, "--curved-grid"})["size"].get<double>(), size, 1e-5 * size);
+    for (const char* const axis : {"i", "x"}) {
+      const auto around = run_json({"components", file, "--curved-grid", "--periodic", axis})["components"];
+      ASSERT_EQ(around.size(), 1u);
+      EXPECT_EQ(around[0]["euler"], 0);
+      EXPECT_NEAR(around[0]["size"].get<double>(), size * 24 / 23, 1e-5 * size);
+    }
+    EXPECT_EQ(run_json({"components", file})["components"][0]["euler"], 1);
+  }
+}
+
+TEST_F(StructuredGrids, WhatACurvedGridCannotHaveIsRefused) {
+  const std::string file = write("rings.vts", rings_vts(3));
+  expect_refused(file, {"--periodic", "i"}, "or --curved-grid, which reads a structured grid as an image");
+  expect_refused(write("other.nrrd", "NRRD0004\n"), {"--curved-grid"},
+                 "expected it with a .vts file, or a .pvd file of them");
+  expect_refused(write("hidden.vts", rings_vts(3, array_of_cells("vtkGhostType", 32))), {"--curved-grid"},
+                 "a curved grid with hidden cells or points");
+  expect_refused(write("cells.vts", rings_vts(3, array_of_cells("material", 1))),
+                 {"--curved-grid", "--var", "material"},
+                 "'material' has values of cells on a curved grid; expected values of points");
+  std::string bent = rings_vts(1);
+  bent.replace(bent.find(" 0\n"), 3, " 1\n");  // z of the first point
+  expect_refused(write("bent.vts", bent), {"--curved-grid"}, "on a curved surface; expected one in a plane");
+}
+
+}  // namespace
+}  // namespace tegl::test
