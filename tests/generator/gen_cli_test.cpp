@@ -423,6 +423,8 @@ TEST(GenCli, MeshCellsAreTiles) {
     EXPECT_EQ(summary.at("tables").size(), expected.dim == 3 ? 2u : 1u);
   }
   EXPECT_EQ(gen({"--dim", "4", "--tile", "octahedron", "--count"}).out, gen({"--tile", "cross4", "--count"}).out);
+  for (const char* command : {"--count", "--classes"})
+    EXPECT_EQ(gen({"--tile", "octahedron", command}).out, gen({"--dim", "3", "--tile", "octahedron", command}).out);
 }
 
 TEST(GenCli, TheTablesOfACellAreWrittenWithTheNumbersOfAllCells) {

@@ -424,7 +424,10 @@ Options parse(std::span<const std::string_view> arguments) {
   }
   // values that depend on each other
   const bool has_dim = std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--dim"; });
-  if (!has_dim && options.cell == nullptr && options.command != Command::Version && options.command != Command::Cells) {
+  const bool is_octahedron = options.tile == TileKind::octahedron;
+  if (!has_dim && is_octahedron) options.dim = 3;
+  if (!has_dim && !is_octahedron && options.cell == nullptr && options.command != Command::Version &&
+      options.command != Command::Cells) {
     refuse(fmt::format("{} without --dim: expected --dim N", command == nullptr ? "--tile" : name));
   }
   set_cell(options, has_dim);
@@ -481,8 +484,8 @@ commands (one of)
 
 options of --count, --classes, --certify, --out, and without a command
   --tile cube|simplex|octahedron    shape of the tile (default cube): simplices have N = 2 (triangle), 3 (tetrahedron)
-                                    and 4, the octahedron has N = 3; their tables are written as C++ and JSON. With
-                                    N = 4 the octahedron is cross4
+                                    and 4, the octahedron has N = 3; their tables are written as C++ and JSON. The
+                                    octahedron needs no --dim; with N = 4 it is cross4
   --tile CELL                       a cell of meshes and lattices, whose name gives its dimension: triangle,
                                     quadrilateral, tetrahedron, wedge, pyramid, hexahedron, simplex4,
                                     prism:tetrahedron, prism:wedge, prism:pyramid, prism:hexahedron, prism:octahedron
