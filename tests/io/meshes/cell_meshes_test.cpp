@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Meshes of cells and tables of points: what the reader makes of small files, and the errors of wrong ones. Files that
-// VTK writes are in vtk_writes_test.py, hostile ones in hostile.
+// Meshes of cells: what the reader makes of small files, and the errors of wrong ones. Files that VTK writes are in
+// vtk_writes_test.py, hostile ones in hostile, tables of points in point_table_test.cpp.
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
 
 #include "io_support.hpp"
-#include "tegl/check.hpp"
-#include "tegl/delaunay.hpp"
-#include "tegl/equal_cells.hpp"
 
 namespace tegl::test {
 namespace {
@@ -310,66 +307,6 @@ TEST(CellMesh, PiecesThatRepeatCellsAreErrorsThatNameThem) {
   EXPECT_EQ(describe_cell_mesh(dir / "b.vtu").remarks.size(), 1U);
   write_file(dir / "c.vtu", vtu(kPoints, kCorners, "4 8", "10 10", on_points("0 1 2 3 4")));
   EXPECT_THAT(describe_cell_mesh(dir / "c.vtu").remarks, testing::IsEmpty());
-}
-
-TEST(EqualCells, AreFoundInCellsOfAllTypes) {
-  const auto find = [](const CellLists& cells) {
-    const auto equal = find_equal_cells(cells);
-    return equal ? std::pair(equal->first, equal->second) : std::pair(std::size_t{0}, std::size_t{0});
-  };
-  EXPECT_EQ(find({}), std::pair(std::size_t{0}, std::size_t{0}));
-  using enum CellType;
-  EXPECT_EQ(find({.types = {tetrahedron, tetrahedron, tetrahedron, tetrahedron},
-                  .corners = {0, 1, 2, 4, 1, 2, 4, 7, 4, 1, 0, 2, 7, 4, 2, 1}}),
-            std::pair(std::size_t{0}, std::size_t{2}));
-  EXPECT_EQ(find({.types = {pyramid, tetrahedron, hexahedron, tetrahedron, voxel},
-                  .corners = {0, 1, 3, 2, 9, 1, 5, 7, 8, 0, 1, 3, 2, 4, 5, 7, 6, 5, 7, 8, 9, 0, 1, 2, 3, 4, 5, 6, 7}}),
-            std::pair(std::size_t{2}, std::size_t{4}));
-  // a polyhedron by its faces alone, and as many corners in another cell
-  EXPECT_EQ(find({.types = {pyramid, tetrahedron, tetrahedron, polyhedron},
-                  .corners = {0, 1, 3, 2, 9, 5, 7, 8, 9, 4, 7, 8, 9},
-                  .ends = {5, 9, 13, 13},
-                  .face_corners = {9, 8, 7, 9, 8, 5, 9, 7, 5, 8, 7, 5},
-                  .face_ends = {3, 6, 9, 12},
-                  .face_lists_ends = {0, 0, 0, 4}}),
-            std::pair(std::size_t{1}, std::size_t{3}));
-  // two 4-simplices by their facets
-  CellLists polytopes{.types = {polytope, simplex4, polytope}, .corners = {1, 2, 3, 4, 5}, .ends = {0, 5, 5}};
-  for (int copy = 0; copy < 2; ++copy)
-    for (Index facet = 0; facet < 5; ++facet) {
-      for (Index face = 0; face < 5; ++face) {
-        if (face == facet) continue;
-        for (Index corner = 0; corner < 5; ++corner)
-          if (corner != facet && corner != face) polytopes.face_corners.push_back(corner);
-        polytopes.face_ends.push_back(polytopes.face_corners.size());
-      }
-      polytopes.facet_ends.push_back(polytopes.face_ends.size());
-    }
-  polytopes.facet_lists_ends = {5, 5, 10};
-  EXPECT_EQ(find(polytopes), std::pair(std::size_t{0}, std::size_t{2}));
-}
-
-TEST(EqualCells, AreFoundAmongManyCells) {
-  // triangles around a point, and tetrahedra of a strip: one point in all cells, and neighbours with near numbers
-  for (const std::size_t corners : {std::size_t{3}, std::size_t{4}}) {
-    CellLists cells;
-    for (Index c = 0; c < 200'000; ++c) {
-      if (corners == 3)
-        cells.corners.insert(cells.corners.end(), {0, c + 1, c + 2});
-      else
-        cells.corners.insert(cells.corners.end(), {c, c + 1, c + 2, c + 3});
-    }
-    cells.types.assign(200'000, corners == 3 ? CellType::triangle : CellType::tetrahedron);
-    EXPECT_FALSE(find_equal_cells(cells));
-    for (const std::size_t copied : {std::size_t{123'456}, std::size_t{77}}) {  // the second copy comes later
-      cells.types.push_back(cells.types[0]);
-      for (std::size_t k = corners; k-- > 0;) cells.corners.push_back(cells.corners[corners * copied + k]);
-      const auto equal = find_equal_cells(cells);
-      ASSERT_TRUE(equal);
-      EXPECT_EQ(equal->first, 123'456U);
-      EXPECT_EQ(equal->second, 200'000U);
-    }
-  }
 }
 
 /// A pentagonal prism as a polyhedron; points 0 to 4 and 5 to 9 are the pentagons.
@@ -690,131 +627,6 @@ TEST(CellMesh, CollectionsNameFilesInTheirFolder) {
     write_file(dir / "w.pvd", collection(sets));
     EXPECT_THAT(error_of([&] { read(dir / "w.pvd"); }).what(), testing::HasSubstr(part));
   }
-}
-
-// --- tables of points
-
-/// Rows of a ball of radius 0.7 in the square or cube from -1 to 1.
-std::string ball_rows(int dim, char separator, std::size_t count) {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> coordinate(-1, 1);
-  std::string rows;
-  for (std::size_t i = 0; i < count; ++i) {
-    double square = 0;
-    for (int a = 0; a < dim; ++a) {
-      const double x = coordinate(random);
-      square += x * x;
-      rows += std::to_string(x) + separator;
-    }
-    rows += std::to_string(0.7 - std::sqrt(square)) + "\n";
-  }
-  return rows;
-}
-
-TEST(PointTable, HasTheDelaunayCellsOfItsPoints) {
-  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
-  TempDir dir;
-  for (int dim = 2; dim <= 4; ++dim) {
-    write_file(dir / "a.csv", ball_rows(dim, ',', dim == 4 ? 150 : 400));
-    const CellMesh mesh = read(dir / "a.csv");
-    EXPECT_EQ(mesh.dim, dim);
-    const AnyComplex complex = to_complex(mesh);
-    std::visit(
-        [&](const auto& any) {
-          const auto contour = extract<double>(any, 0.1);
-          EXPECT_GT(contour.simplices.size(), 10U);
-          const MeshReport report = check(contour);
-          EXPECT_EQ(report.bad_links + report.nonmanifold_simplices + report.orientation_conflicts, 0U);
-        },
-        complex);
-  }
-}
-
-TEST(PointTable, ColumnsHaveNamesInAnyOrder) {
-  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
-  TempDir dir;
-  write_file(
-      dir / "a.csv",
-      "\xef\xbb\xbf# stations\r\n\"p, hPa\";Y;X;name it\r\n\r\n1;0;0;5\r\n2;0;1;nan\r\n3;1;0;\r\n4;1.5;+1;8\r\n");
-  CellMeshOptions options;
-  expect_error(ErrorCode::VariableNotFound, {"p, hPa", "name it"}, [&] { read(dir / "a.csv"); });
-  options.variable = "p, hPa";
-  const CellMesh mesh = read(dir / "a.csv", options);
-  EXPECT_THAT(mesh.axis_names, testing::ElementsAre("X", "Y"));
-  EXPECT_THAT(mesh.points, testing::ElementsAre(0, 0, 1, 0, 0, 1, 1, 1.5));
-  EXPECT_THAT(mesh.values, testing::ElementsAre(1, 2, 3, 4));
-  options.variable = "name it";
-  const CellMesh other = read(dir / "a.csv", options);
-  EXPECT_EQ(other.values[3], 8);
-  EXPECT_TRUE(std::isnan(other.values[1]) && std::isnan(other.values[2]));
-  // without x and y, all columns but one are coordinates
-  write_file(dir / "b.csv", "lon\tlat\tt\n0\t0\t1\n1\t0\t2\n0\t1\t3\n1\t1\t4\n");
-  EXPECT_THAT(read(dir / "b.csv").axis_names, testing::ElementsAre("lon", "lat"));
-  write_file(dir / "c.csv", "0 0  1\n1 0 2\n 0 1 3\n1 1 4\n");
-  EXPECT_THAT(read(dir / "c.csv").values, testing::ElementsAre(1, 2, 3, 4));
-  options.variable = "value";
-  EXPECT_THAT(read(dir / "c.csv", options).values, testing::ElementsAre(1, 2, 3, 4));
-}
-
-TEST(PointTable, ColumnsOfTextAreLeftOut) {
-  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
-  TempDir dir;
-  write_file(dir / "a.csv", "station,x,y,v\nA1,0,0,1\nB2,1,0,2\n3,0,1,3\nC,1,1,4\n");
-  const CellMesh mesh = read(dir / "a.csv");
-  EXPECT_EQ(mesh.variable, "v");
-  EXPECT_THAT(mesh.values, testing::ElementsAre(1, 2, 3, 4));
-  CellMeshOptions options;
-  options.variable = "station";
-  expect_error(ErrorCode::MalformedFile, {"line 2, column 1", "'A1'"}, [&] { read(dir / "a.csv", options); });
-  write_file(dir / "b.csv", "x,y,a,b\n0,0,one,two\n");
-  expect_error(ErrorCode::MalformedFile, {"line 2", "a, b"}, [&] { read(dir / "b.csv"); });
-}
-
-TEST(PointTable, ColumnsOfOneNameAreErrorsIfTheyAreRead) {
-  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
-  TempDir dir;
-  CellMeshOptions options;
-  const auto refused = [&](const std::string& names, const std::vector<std::string>& parts) {
-    write_file(dir / "a.csv", names + "\n0,0,1,5\n1,0,2,5\n0,1,3,5\n");
-    expect_error(ErrorCode::MalformedFile, parts, [&] { (void)read(dir / "a.csv", options); });
-  };
-  refused("x,X,y,v", {"a.csv", "columns 1 ('x') and 2 ('X')"});
-  refused("lon,lat,lat,v", {"columns 2 ('lat') and 3 ('lat')"});
-  options.variable = "v";
-  refused("x,y,v,v", {"columns 3 ('v') and 4 ('v')", "different names"});
-  // the chosen column is no coordinate, and lower case comes first
-  options.variable = "X";
-  write_file(dir / "b.csv", "X,x,y,v\n1,0,0,5\n2,1,0,5\n3,0,1,5\n");
-  EXPECT_THAT(read(dir / "b.csv", options).values, testing::ElementsAre(1, 2, 3));
-  options.variable = "v";
-  // columns that are not read may have any names
-  write_file(dir / "b.csv", "x,y,v,note,note\n0,0,1,a,a\n1,0,2,b,b\n0,1,3,c,c\n");
-  EXPECT_THAT(read(dir / "b.csv", options).values, testing::ElementsAre(1, 2, 3));
-}
-
-TEST(PointTable, WrongRowsAreErrorsWithTheirLine) {
-  TempDir dir;
-  const std::vector<WrongMesh> all = {
-      {"x,y,f\n0,0,1\n1,0\n", ErrorCode::MalformedFile, {"line 3 has 2 fields; expected 3"}},
-      {"x,y,f\n0,0,1\n1,zero,2\n", ErrorCode::MalformedFile, {"line 3, column 2", "'zero'"}},
-      {"x,y,f\n0,0,1\n1,,2\n", ErrorCode::MalformedFile, {"line 3, column 2"}},
-      {"x,y,f\n0,inf,1\n", ErrorCode::MalformedFile, {"line 2, column 2", "finite"}},
-      {"x,y,f\n0,0,1\n1,0,two\n", ErrorCode::MalformedFile, {"line 3, column 3", "'two'"}},
-      {"x,y,f\n0,0,1\n1,0,2\n# again\n0,0,3\n", ErrorCode::MalformedFile, {"line 5 has the same point as line 2"}},
-      {"x,y,f\n", ErrorCode::MalformedFile, {"without a row"}},
-      {"x,f\n0,1\n", ErrorCode::UnsupportedData, {"2 columns, 1 of them"}},
-      {"1,2,3,4,5,6\n", ErrorCode::UnsupportedData, {"6 columns, 5 of them"}},
-      {std::string(3 << 20, '1'), ErrorCode::MalformedFile, {"a line of more than"}},
-  };
-  for (const WrongMesh& wrong : all) {
-    write_file(dir / "wrong.csv", wrong.bytes);
-    std::vector<std::string> parts = wrong.parts;
-    parts.emplace_back("wrong.csv");
-    expect_error(wrong.code, parts, [&] { read(dir / "wrong.csv"); });
-  }
-  if (!has_delaunay()) return;
-  write_file(dir / "wrong.csv", "0,0,1\n1,0,2\n2,0,3\n");  // all on a line
-  expect_error(ErrorCode::MalformedFile, {"wrong.csv", "in a line"}, [&] { read(dir / "wrong.csv"); });
 }
 
 }  // namespace
