@@ -101,14 +101,10 @@ class Mover {
         fail(fmt::format("vertex {} has", v), height);
   }
 
-  /// By the dual vectors if the basis is another one; otherwise by height, which does not depend on them.
+  /// By the dual vectors, as those of `unroll`: heights also differ by the steps of axes that are not periodic.
   void find_shares() {
     const std::size_t count = counted_.size();
     for_each_item(contour_.vertices.size(), work_.threads, {}, [&](std::size_t v) {
-      if (!crossed_.is_other) {
-        shares_[v] = family_.height(contour_.vertices[v]) / crossed_.height;
-        return;
-      }
       const std::array<double, N> x = widened_point<N>(contour_.vertices[v]);
       for (std::size_t i = 0; i < count; ++i) shares_[v * count + i] = share_of(counted_[i].period, x);
     });
