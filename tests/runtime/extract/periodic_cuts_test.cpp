@@ -145,6 +145,36 @@ TEST(PeriodicCuts, CutsDoNotDependOnTheUnitsOfAxes) {
     }
 }
 
+double waves_of_cell(const std::array<double, 3>& shares) { return waves_from<3>(shares, 0, 0.0); }
+
+TEST(PeriodicCuts, RoundingOfNormalsIsNoDirection) {
+  const auto cuts = [](const std::vector<Vector<3>>& vectors, const Vector<3>& normal) {
+    return cuts_wrapped<3>(periods_of(vectors), Hyperplane<3>{normal, 0.3});
+  };
+  const std::vector<Vector<3>> cube = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, along_z = {{0, 0, 1}};
+  for (const double rounding : {std::cos(std::numbers::pi / 2), -1e-17, 0.0}) {
+    EXPECT_TRUE(cuts(cube, {rounding, 0, 1}));
+    EXPECT_TRUE(cuts(along_z, {rounding, 0, 1}));
+    EXPECT_TRUE(cuts(along_z, {1, 0, rounding}));  // along the period
+    EXPECT_FALSE(cut_period<3>(periods_of(along_z), {1, 0, rounding}));
+  }
+  EXPECT_TRUE(cuts(cube, {std::cos(std::numbers::pi_v<float> / 2), 0, 1}));
+  EXPECT_FALSE(cuts(along_z, {1e-6, 0, 1}));
+  EXPECT_FALSE(cuts(along_z, {1, 0, 1e-6}));
+  // a short period is no rounding of a long one
+  const std::vector<Vector<3>> units = {{360, 0, 0}, {0, 1, 0}, {0, 0, 1e-4}};
+  EXPECT_FALSE(cuts(units, {1, 0, 1}));
+  EXPECT_FALSE(cuts(units, {1, 1, 0}));
+  EXPECT_TRUE(cuts(units, {1, 0, 3.6e6}));
+  EXPECT_TRUE(cuts(units, {0, 1, 2e4}));
+  EXPECT_TRUE(cuts(units, {0, 0, 1}));
+  // such a cut is the same as without it
+  const auto contour = wrapped<double>(torus_image<3, double>({12, 10, 12}, waves_of_cell), {0.0, 0.0, 1.0}, 0.4);
+  for (const double at : {0.3, 5.3})
+    EXPECT_NEAR(measure(slice(contour, Hyperplane<3>{{std::cos(std::numbers::pi / 2), 0, 1}, at})).size,
+                measure(slice(contour, Hyperplane<3>::across(2, 0.3))).size, 1e-9);
+}
+
 /// An image of a unit cell with these vectors, of a field by shares of the cell.
 template <int N, class F>
 OwnedImage<double, N> cell_image(const std::array<std::size_t, N>& sizes, const std::array<Vector<N>, N>& vectors,
@@ -170,8 +200,6 @@ double most_apart(const Contour<N, double>& contour, const Contour<N - 1, double
   }
   return most;
 }
-
-double waves_of_cell(const std::array<double, 3>& shares) { return waves_from<3>(shares, 0, 0.0); }
 
 TEST(PeriodicCuts, PlacesOnAShearedAxisAreThoseOfTheRepeatedField) {
   const auto image = cell_image<3>({24, 24, 24}, {{{1, 0, 0}, {0, 1, 0}, {0.3, 0, 1}}}, waves_of_cell);
