@@ -161,6 +161,52 @@ std::optional<std::size_t> reduce_heights(LatticeBasis<N>& basis, double roundin
   }
 }
 
+/// The inner product of vectors whose axes are divided by `longest`, so that their units do not matter.
+template <int N>
+double scaled_product(const Vector<N>& a, const Vector<N>& b, const Vector<N>& longest) {
+  double sum = 0.0;
+  for (int i = 0; i < N; ++i)
+    if (longest[i] > 0.0) sum += a[i] / longest[i] * (b[i] / longest[i]);
+  return sum;
+}
+
+/// Subtracts vectors along the hyperplanes from longer ones, until none gets shorter: simplices have smaller shares of
+/// short periods.
+template <int N>
+void shorten_within(LatticeBasis<N>& basis, std::size_t across, const Vector<N>& longest) {
+  const std::size_t count = basis.vectors.size();
+  constexpr double kShorter = 1.0 - 1e-9;  // so that rounding does not go on
+  bool is_shorter = true;
+  while (is_shorter) {
+    is_shorter = false;
+    for (std::size_t p = 0; p < count; ++p)
+      for (std::size_t q = 0; q < count; ++q) {
+        if (p == q || p == across || q == across) continue;
+        const Vector<N>&from = basis.vectors[p], &other = basis.vectors[q];
+        const double square = scaled_product<N>(other, other, longest), both = scaled_product<N>(from, other, longest);
+        const double multiple = std::round(both / square);
+        const double before = scaled_product<N>(from, from, longest);
+        if (multiple == 0.0 || !(before + multiple * (multiple * square - 2.0 * both) < kShorter * before)) continue;
+        basis.subtract(p, multiple, q);
+        is_shorter = true;
+      }
+  }
+}
+
+/// Lays the dual vectors of periods along the hyperplanes into these: the product with such a period does not change by
+/// multiples of the normal, but points have smaller shares. The periods keep their starts at the start of `across`.
+template <int N>
+void lay_duals_within(CrossedPeriods<N>& crossed, const Vector<N>& normal, const Vector<N>& longest) {
+  double square = 0.0;
+  for (int a = 0; a < N; ++a) square += normal[a] * longest[a] * (normal[a] * longest[a]);
+  for (Period<N>& period : crossed.within) {
+    double both = 0.0;
+    for (int a = 0; a < N; ++a) both += period.dual[a] * longest[a] * (normal[a] * longest[a]);
+    for (int a = 0; a < N; ++a) period.dual[a] -= both / square * normal[a];
+    period.start -= both / square * crossed.across.start * crossed.height;
+  }
+}
+
 }  // namespace
 
 template <int N>
@@ -195,11 +241,13 @@ CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>& family, std::span<c
   const std::optional<std::size_t> across = reduce_heights(basis, rounding, result.is_other);
   result.has_cuts = across.has_value();
   if (!across) return result;
+  if (result.is_other) shorten_within<N>(basis, *across, longest);
   for (std::size_t p = 0; p < periods.size(); ++p)
     if (p != *across) result.within.push_back(basis.periods[p]);
   result.across = basis.periods[*across];
   result.times = basis.times[*across];
   result.height = family.height(result.across.vector);
+  if (result.is_other) lay_duals_within<N>(result, family.normal(), longest);
   result.is_straight = family.is_across_axis();
   for (int a = 0; a < N; ++a)
     if (a != family.dropped_axis() && std::abs(basis.vectors[*across][a]) > kRounding * longest[a])

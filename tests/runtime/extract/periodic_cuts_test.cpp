@@ -325,12 +325,44 @@ TEST(PeriodicCuts, AxesOfTwoObliquePeriodsHaveClosedCuts) {
   EXPECT_FALSE(cuts_wrapped<3>(contour.periods, {{1.0, 0.0, 0.5}, 0.0}));
 }
 
+TEST(PeriodicCuts, AllLatticePlanesOfSmallMultiplesHaveCuts) {
+  const auto test = [](const std::array<Vector<3>, 3>& vectors, std::size_t samples, double most) {
+    const std::array<std::size_t, 3> sizes = {samples, samples, samples};
+    const auto contour = wrapped<double>(cell_image<3>(sizes, vectors, waves_of_cell), all_periodic<3>(), 0.4);
+    for (int x = -3; x <= 3; ++x)
+      for (int y = -3; y <= 3; ++y)
+        for (int z = 0; z <= 3; ++z) {
+          const Hyperplane<3> plane{{1.0 * x, 1.0 * y, 1.0 * z}, 0.37};
+          if ((x == 0 && y == 0 && z == 0) || !cuts_wrapped<3>(contour.periods, plane)) continue;
+          SCOPED_TRACE(testing::Message() << x << " " << y << " " << z);
+          const auto cut = slice(contour, plane);
+          EXPECT_TRUE(is_closed(check(cut)));
+          EXPECT_GT(cut.simplices.size(), 10u);
+          EXPECT_LT(most_apart(contour, cut, plane, waves_of_cell, 0.4), most);
+        }
+  };
+  test({{{1, 0, 0}, {0, 1, 0}, {0.3, 0, 1}}}, 24, 0.03);
+  test({{{0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}}, 12, 0.2);
+  // periods along the planes are short, and axes may have any units
+  const auto contour = wrapped<double>(torus_image<3, double>({24, 24, 24}, waves_of_cell), all_periodic<3>(), 0.4);
+  const auto scaled = scale_axes(contour, {360.0, 1.0, 1e-4});
+  const auto expected = slice(contour, Hyperplane<3>{{3, 3, 1}, 0.37});
+  const auto cut = slice(scaled, Hyperplane<3>{{3.0 / 360, 3, 1e4}, 0.37});
+  EXPECT_TRUE(is_closed(check(cut)));
+  EXPECT_EQ(cut.simplices.size(), expected.simplices.size());
+  for (const Period<2>& period : expected.periods) EXPECT_LT(std::hypot(period.vector[0], period.vector[1]), 3.5);
+}
+
 TEST(PeriodicCuts, SimplicesOfHalfASumOfPeriodsAreRefused) {
-  const auto contour = wrapped<double>(torus_image<3, double>({3, 3, 3}, noise_of<3>(5)), all_periodic<3>(), 0.0);
-  const Hyperplane<3> plane{{2.0, 3.0, 0.0}, 0.5};
+  // by three samples, the parts of a long cell reach over half of a short period in the plane
+  const auto image = cell_image<3>({3, 3, 3}, {{{1, 0, 0}, {8, 1, 0}, {0, 8, 1}}}, noise_of<3>(5));
+  const auto contour = wrapped<double>(image, all_periodic<3>(), 0.0);
+  const Hyperplane<3> plane{{1.0, 1.0, 0.0}, 0.5};
   EXPECT_TRUE(cuts_wrapped<3>(contour.periods, plane));
   expect_error(ErrorCode::InvalidArgument, "simplices of half of it", [&] { (void)slice(contour, plane); });
-  EXPECT_TRUE(is_closed(check(slice(contour, Hyperplane<3>{{1.0, 2.0, 0.0}, 0.5}))));
+  const auto cube = wrapped<double>(torus_image<3, double>({3, 3, 3}, noise_of<3>(5)), all_periodic<3>(), 0.0);
+  for (const Vector<3>& normal : {Vector<3>{1, 2, 0}, Vector<3>{2, 3, 0}})
+    EXPECT_TRUE(is_closed(check(slice(cube, Hyperplane<3>{normal, 0.5}))));
 }
 
 TEST(PeriodicCuts, PlacesFarFromAPeriodAreErrorsUnlessTheyAreModuloIt) {
@@ -363,7 +395,7 @@ TEST(PeriodicCuts, PlacesFarFromAnObliquePeriodHaveTheCutsOfNearOnes) {
     const std::array<Vector<3>, 3> sheared = {{{1, 0, 0}, {0, 1, 0}, {0.3, 0, 1}}};
     for (const auto& vectors : {primitive, sheared}) {
       const auto contour = wrapped<Real>(cell_image<3>({12, 12, 12}, vectors, waves_of_cell), all_periodic<3>(), 0.4);
-      for (const Vector<3>& normal : {Vector<3>{0, 0, 1}, Vector<3>{0, 0, -1}, Vector<3>{1, 0, 0}}) {
+      for (const Vector<3>& normal : {Vector<3>{0, 0, 1}, Vector<3>{0, 0, -1}, Vector<3>{1, 2, 1}}) {
         const std::optional<CutPeriod<3>> period = cut_period<3>(contour.periods, normal);
         ASSERT_TRUE(period);
         const Hyperplane<3> near{normal, 0.2 * period->length};
