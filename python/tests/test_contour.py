@@ -343,11 +343,6 @@ def test_periodic_axes_give_a_wrapped_contour(tmp_path):
             pytest.fail("a wrapped contour was converted")
     with pytest.raises(ValueError, match="expected an unrolled one"):
         contour.simplify(0.5)
-    # planes along which it does not repeat itself are refused for this, wherever they are
-    for offset in (3.0, 1e3):
-        with pytest.raises(ValueError, match="along which it does not repeat itself"):
-            contour.slice(normal=(1, 2**0.5, 0), offset=offset)
-    assert contour.slice(normal=(1, 1, 0), offset=1e3 + 0.5).check().is_closed
 
 
 def test_count_has_the_size_of_the_contour():
@@ -490,10 +485,10 @@ def test_cuts_across_periods_by_place_or_normal():
     # lattice planes
     for normal in ([1, 1, 0], [1, 1, 1], [1, -2, 0]):
         assert straight.slice(normal=normal, offset=7.3).check().is_closed
-    with pytest.raises(ValueError, match="across one of its periods"):
-        straight.slice(normal=[1, 2 ** 0.5, 0], offset=0.5)
-    with pytest.raises(ValueError, match="expected an offset between"):
-        straight.slice(normal=[1, 2 ** 0.5, 0], offset=7.5)
+    # other planes are refused for this reason, wherever they are
+    for offset in (0.5, 7.5):
+        with pytest.raises(ValueError, match="across one of its periods, along which it does not repeat itself"):
+            straight.slice(normal=[1, 2 ** 0.5, 0], offset=offset)
     # rounding of the affine is none of the cell
     for shear in (1e-8, 0.3):
         oblique = contour(shear)
