@@ -63,15 +63,17 @@ namespace tegl {
 /// of multiples of the periods, one less than there are periods, are along the hyperplane (`cuts_wrapped`,
 /// `cut_period`). So every place on a periodic axis has a cut, also on the axes of an oblique unit cell if whole
 /// numbers of cells fit together along them, and so has every lattice plane of a contour with N periods. The cut is
-/// complete and joined at the seam, also if the seam is not plane, and has these sums as its periods. Other hyperplanes
-/// across a period are refused.
+/// complete and joined at the seam, also if the seam is not plane, and has these sums as its periods. It is made in the
+/// period of offsets that begins at the seam, and moved from there (`CutPeriod`): far places have the same cuts. Other
+/// hyperplanes across a period are refused.
 ///
 /// Quadrilaterals are split by the shorter diagonal; prisms (N = 5) into three tetrahedra, in the order of the
 /// contour's vertex numbers. The order of the result depends only on the order of the contour.
 /// Errors: InvalidArgument (normal 0 or not finite, offset or a coordinate not finite, a vertex number out of range,
-/// attributes or normals of another number, a wrapped contour unless `cuts_wrapped`; across a period, an offset or a
-/// coordinate more than 2^29 periods from its start, and simplices of half a period of the cut or more if this is a sum
-/// of several periods), Cancelled. If the hyperplane is beyond the contour, the cut is empty. O(#S + #V) time, plus
+/// attributes or normals of another number, a wrapped contour unless `cuts_wrapped`; across a period, coordinates more
+/// than 2^29 periods from its start, also offsets unless CutPeriod::is_straight, and simplices of half a period of the
+/// cut or more if this is a sum of several periods), Cancelled. If the hyperplane is beyond the contour, the cut is
+/// empty. O(#S + #V) time, plus
 /// O(c log c) for a cut of c simplices; #V bytes plus O(c) memory, and 8 #V bytes for each period that is crossed. The
 /// result does not depend on the number of threads. Thread-safe.
 template <int N, Coordinate Real>
@@ -122,6 +124,7 @@ struct CutPeriod {
   double first = 0.0;
   /// Whether the hyperplanes are across an axis and the vector is along it, up to rounding. Then cuts whose offsets
   /// differ by multiples of the length are equal, and `slice` makes them at the place in [first, first + length).
+  /// Otherwise it moves the cut at that place within the hyperplane, by multiples of the vector.
   bool is_straight = false;
 };
 

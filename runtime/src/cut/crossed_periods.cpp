@@ -7,9 +7,14 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "base/orthonormal.hpp"
+#include "base/slice_at.hpp"
+#include "tegl/error.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl {
@@ -19,6 +24,7 @@ namespace {
 constexpr double kRounding = 1e-6;
 /// Multiples of periods in a basis. With more, real numbers would seem to be multiples of one height.
 constexpr double kMostTimes = 32;
+constexpr double kFarthest = 1 << 29;  ///< periods to vertices and levels
 
 /// The vectors of periods without their parts that are rounding. A part that carries a share of its period (the product
 /// with the dual vector does not depend on units) is none.
@@ -175,16 +181,42 @@ CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>& family, std::span<c
   return result;
 }
 
-template <int N>
-double place_modulo(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset) {
-  const double along = crossed.across.vector[family.dropped_axis()], start = crossed.across.start * along;
-  return place_in_period(family.sign() * family.template level<double>(offset), std::min(start, start + along),
-                         std::abs(along));
+template <class Real, int N>
+MovedLevel level_in_period(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset) {
+  const double level = family.template level<double>(offset);
+  if (!crossed.is_straight && !is_near_period(crossed, level)) fail_far(family, crossed, "a cut across a period", level);
+  const bool is_place = family.is_across_axis();
+  const double sign = is_place ? family.sign() : 1.0;
+  const double along = sign * crossed.height, start = crossed.across.start * along;
+  const double moved = place_in_period(sign * level, std::min(start, start + along), std::abs(along));
+  return {sign * (is_place ? static_cast<double>(rounded_at<Real>(moved)) : moved),
+          crossed.is_straight ? 0.0 : std::round((sign * level - moved) / along)};
 }
 
-#define TEGL_INSTANTIATE_CROSSED(N)                                                                   \
-  template CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>&, std::span<const Period<N>>); \
-  template double place_modulo(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);
+template <int N>
+bool is_near_period(const CrossedPeriods<N>& crossed, double height) {
+  return std::abs(height / crossed.height - crossed.across.start) <= kFarthest;
+}
+
+template <int N>
+void fail_far(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, const std::string& what,
+              double height) {
+  const bool is_place = family.is_across_axis();
+  const double sign = is_place ? family.sign() : 1.0;
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("{} has {}, with the period {} from {}; expected at most {} periods from there", what,
+                  is_place ? fmt::format("the coordinate {} along axis {}", sign * height, family.dropped_axis())
+                           : fmt::format("the height {} over the hyperplane through 0", height),
+                  std::abs(crossed.height), sign * crossed.across.start * crossed.height, kFarthest));
+}
+
+#define TEGL_INSTANTIATE_CROSSED(N)                                                                        \
+  template CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>&, std::span<const Period<N>>);      \
+  template MovedLevel level_in_period<float>(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);  \
+  template MovedLevel level_in_period<double>(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double); \
+  template bool is_near_period(const CrossedPeriods<N>&, double);                                          \
+  template void fail_far(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, const std::string&, double);
 TEGL_INSTANTIATE_CROSSED(3)
 TEGL_INSTANTIATE_CROSSED(4)
 TEGL_INSTANTIATE_CROSSED(5)

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "cut/hyperplane_family.hpp"
@@ -38,9 +39,24 @@ struct CrossedPeriods {
 template <int N>
 CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>& family, std::span<const Period<N>> periods);
 
-/// The coordinate of the hyperplane <normal, x> = offset across an axis, moved by multiples of `across` into the period
-/// that begins at the seam. For `is_straight`.
+/// A hyperplane, moved by multiples of `across` to the period that begins at its start.
+struct MovedLevel {
+  double level;  ///< the height there
+  double times;  ///< how many times `across` from there to the hyperplane; 0 if the cuts are equal (`is_straight`)
+};
+
+/// The hyperplane <normal, x> = offset, moved into the period; its height is rounded to Real across an axis, as those
+/// of vertices. Throws InvalidArgument if it is far from the period, unless `is_straight`. The hyperplanes cross a
+/// period and have cuts.
+template <class Real, int N>
+MovedLevel level_in_period(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset);
+
+/// Whether a height is at most 2^29 periods from the start of `across`. Farther ones are too inexact.
 template <int N>
-double place_modulo(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset);
+bool is_near_period(const CrossedPeriods<N>& crossed, double height);
+/// Throws InvalidArgument: `what` has a height that is not near.
+template <int N>
+[[noreturn]] void fail_far(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, const std::string& what,
+                           double height);
 
 }  // namespace tegl::detail

@@ -49,8 +49,7 @@ class Mover {
   };
 
   static constexpr std::int64_t kZero = std::int64_t{1} << 31;  ///< the lower half of the key of a vertex that stays
-  static constexpr double kFarthest = 1 << 29;  ///< periods to vertices and levels, so that keys have room
-  static constexpr double kLongest = 128;       ///< periods that a simplex reaches over, to bound the work for it
+  static constexpr double kLongest = 128;  ///< periods that a simplex reaches over, to bound the work for it
   static constexpr std::size_t kBlock = std::size_t{1} << 14;  ///< simplices of a part of the work
 
   static Key key_of(Index vertex, std::int64_t times) { return Key{vertex} << 32 | static_cast<Key>(times + kZero); }
@@ -73,42 +72,24 @@ class Mover {
     return family_.sign() * static_cast<double>(static_cast<Real>(x));
   }
 
-  [[nodiscard]] bool is_near(double height) const {
-    return std::abs(height / crossed_.height - crossed_.across.start) <= kFarthest;
-  }
-
-  /// Throws InvalidArgument if levels or vertices are so far from the period that moves would have no keys.
+  /// Throws InvalidArgument if vertices are so far from the period that moves would have no keys.
   void require_near() const {
-    const auto fail = [&](const std::string& what, double height) {
-      const bool is_place = family_.is_across_axis();
-      const double sign = is_place ? family_.sign() : 1.0;
-      throw Error(
-          ErrorCode::InvalidArgument,
-          fmt::format("{} {}, with the period {} from {}; expected at most {} periods from there", what,
-                      is_place ? fmt::format("the coordinate {} along axis {}", sign * height, family_.dropped_axis())
-                               : fmt::format("the height {} over the hyperplane through 0", height),
-                      std::abs(crossed_.height), sign * crossed_.across.start * crossed_.height, kFarthest));
+    const auto is_far = [&](std::size_t v) {
+      return !is_near_period(crossed_, family_.height(contour_.vertices[v]));
     };
-    for (const double level : levels_)
-      if (!is_near(level)) fail("a cut across a period has", level);
     std::atomic<bool> are_near = true;
     for_each_item(contour_.vertices.size(), work_.threads, {}, [&](std::size_t v) {
-      if (!is_near(family_.height(contour_.vertices[v]))) are_near = false;
+      if (is_far(v)) are_near = false;
     });
     if (are_near) return;
     for (std::size_t v = 0; v < contour_.vertices.size(); ++v)
-      if (const double height = family_.height(contour_.vertices[v]); !is_near(height))
-        fail(fmt::format("vertex {} has", v), height);
+      if (is_far(v)) fail_far(family_, crossed_, fmt::format("vertex {}", v), family_.height(contour_.vertices[v]));
   }
 
-  /// By the dual vectors if the basis is another one; otherwise by height, which does not depend on them.
+  /// By the dual vectors, as those of `unroll`: heights also differ by the steps of axes that are not periodic.
   void find_shares() {
     const std::size_t count = counted_.size();
     for_each_item(contour_.vertices.size(), work_.threads, {}, [&](std::size_t v) {
-      if (!crossed_.is_other) {
-        shares_[v] = family_.height(contour_.vertices[v]) / crossed_.height;
-        return;
-      }
       const std::array<double, N> x = widened_point<N>(contour_.vertices[v]);
       for (std::size_t i = 0; i < count; ++i) shares_[v * count + i] = share_of(counted_[i].period, x);
     });
@@ -179,7 +160,7 @@ class Mover {
     if (!(highest - lowest <= kLongest * std::abs(along))) return false;
     const auto [from, to] = std::minmax({(levels_.front() - highest) / along, (levels_.front() - lowest) / along,
                                          (levels_.back() - highest) / along, (levels_.back() - lowest) / along});
-    // more at both ends, as coordinates are rounded: one across several axes
+    // a bit more at both ends, as moved coordinates are rounded: one period if the hyperplanes are oblique
     const double largest =
         std::max({std::abs(lowest), std::abs(highest), std::abs(levels_.front()), std::abs(levels_.back())});
     constexpr double kCoordinates = 16 * static_cast<double>(std::numeric_limits<Real>::epsilon());
@@ -260,6 +241,23 @@ class Mover {
 }  // namespace
 
 template <int N, class Real>
+void move_within(Contour<N - 1, Real>& cut, const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed,
+                 double times, unsigned threads) {
+  if (times == 0.0) return;
+  // by whole and partial periods of the cut, so that rounding of the vector does not grow with the distance
+  const std::array<double, N - 1> along = family.within(crossed.across.vector);
+  std::array<double, N - 1> way{};
+  for (const Period<N - 1>& period : cut.periods)
+    add_times(period, std::remainder(times * share_of(period, along), 1.0), way);
+  for_each_item(cut.vertices.size(), threads, {}, [&](std::size_t v) {
+    std::array<double, N - 1> x = widened_point<N - 1>(cut.vertices[v]);
+    for (int a = 0; a < N - 1; ++a) x[a] += way[a];
+    move_inside<N - 1, Real>(cut.periods, x);
+    for (int a = 0; a < N - 1; ++a) cut.vertices[v][a] = static_cast<Real>(x[a]);
+  });
+}
+
+template <int N, class Real>
 Contour<N, Real> moved_to_levels(const Contour<N, Real>& contour, const HyperplaneFamily<N>& family,
                                  const CrossedPeriods<N>& crossed, std::span<const double> levels,
                                  const WorkOptions& work) {
@@ -267,6 +265,8 @@ Contour<N, Real> moved_to_levels(const Contour<N, Real>& contour, const Hyperpla
 }
 
 #define TEGL_INSTANTIATE_MOVED(N, Real)                                                          \
+  template void move_within(Contour<N - 1, Real>&, const HyperplaneFamily<N>&,                   \
+                            const CrossedPeriods<N>&, double, unsigned);                         \
   template Contour<N, Real> moved_to_levels(const Contour<N, Real>&, const HyperplaneFamily<N>&, \
                                             const CrossedPeriods<N>&, std::span<const double>, const WorkOptions&);
 TEGL_INSTANTIATE_MOVED(3, float)

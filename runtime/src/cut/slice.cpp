@@ -199,12 +199,12 @@ detail::CrossedPeriods<N> periods_to_cut(const HyperplaneFamily<N>& family, std:
   return crossed;
 }
 
-/// The height of the hyperplane <normal, x> = offset, rounded as the vertices. If cuts at places a period apart are
-/// equal, it is that of the place in the period, so that they are equal bit by bit.
+/// The hyperplane <normal, x> = offset, at which the contour is cut: in the first period, if it crosses one.
 template <class Real, int N>
-double level_of(const HyperplaneFamily<N>& family, const detail::CrossedPeriods<N>& crossed, double offset) {
-  if (!crossed.any || !crossed.is_straight) return family.template level<Real>(offset);
-  return family.sign() * static_cast<double>(detail::rounded_at<Real>(detail::place_modulo(family, crossed, offset)));
+detail::MovedLevel level_of(const HyperplaneFamily<N>& family, const detail::CrossedPeriods<N>& crossed,
+                            double offset) {
+  if (!crossed.any) return {family.template level<Real>(offset), 0.0};
+  return detail::level_in_period<Real>(family, crossed, offset);
 }
 
 /// Cuts a contour none of whose periods the hyperplane crosses.
@@ -236,7 +236,8 @@ struct Parallels {
 /// A hyperplane of a stack.
 struct StackedCut {
   std::size_t parallels;  ///< index of its `Parallels`
-  double level;
+  double level;           ///< at which the contour is cut
+  double times;           ///< periods across from there to the hyperplane
 };
 
 /// Groups the hyperplanes by normal. Throws InvalidArgument as `slice` does.
@@ -251,9 +252,9 @@ std::vector<StackedCut> group_by_normal(const Contour<N, Real>& contour, std::sp
       const HyperplaneFamily<N> family(hyperplane.normal);
       group = groups.insert(group, {hyperplane.normal, family, periods_to_cut<N>(family, contour.periods), {}, {}, {}});
     }
-    const double level = level_of<Real>(group->family, group->crossed, hyperplane.offset);
+    const auto [level, times] = level_of<Real>(group->family, group->crossed, hyperplane.offset);
     group->levels.push_back(level);
-    stack.push_back({static_cast<std::size_t>(group - groups.begin()), level});
+    stack.push_back({static_cast<std::size_t>(group - groups.begin()), level, times});
   }
   for (Parallels<N, Real>& group : groups) {
     std::sort(group.levels.begin(), group.levels.end());
@@ -272,13 +273,14 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
   const detail::CrossedPeriods<N> crossed = periods_to_cut<N>(family, contour.periods);
-  const double level = level_of<Real>(family, crossed, hyperplane.offset);
+  const auto [level, times] = level_of<Real>(family, crossed, hyperplane.offset);
   Contour<N - 1, Real> cut;
   if (crossed.any) {
     detail::require_sound(contour);
     cut = cut_at(detail::moved_to_levels(contour, family, crossed, std::span(&level, 1),
                                          {work.threads, detail::part_of(work.progress, 0.0, 0.6)}),
                  family, level, {work.threads, detail::part_of(work.progress, 0.6, 1.0)});
+    detail::move_within(cut, family, crossed, times, work.threads);
   } else {
     cut = cut_at(contour, family, level, work);
   }
@@ -307,8 +309,10 @@ requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack
   const auto cut_of = [&](const StackedCut& cut) {
     const Parallels<N, Real>& group = groups[cut.parallels];
     const auto place = std::lower_bound(group.levels.begin(), group.levels.end(), cut.level) - group.levels.begin();
-    return detail::cut_simplices(group.of(contour), group.family, cut.level,
-                                 group.touching.of(static_cast<std::size_t>(place)));
+    Contour<N - 1, Real> moved = detail::cut_simplices(group.of(contour), group.family, cut.level,
+                                                       group.touching.of(static_cast<std::size_t>(place)));
+    detail::move_within(moved, group.family, group.crossed, cut.times, 1);
+    return moved;
   };
   // the cuts: one per thread at a time, so that progress can be reported between them
   std::vector<Contour<N - 1, Real>> cuts(stack.size());
