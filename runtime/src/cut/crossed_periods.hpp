@@ -39,7 +39,7 @@ template <int N>
 CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>& family, std::span<const Period<N>> periods);
 
 /// The coordinate of the hyperplane <normal, x> = offset across an axis, moved by multiples of `across` into the period
-/// that begins at the seam. For `is_straight`.
+/// that begins at the seam. The cut there is the same, or, unless `is_straight`, the same one moved.
 template <int N>
 double place_modulo(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset);
 

@@ -199,11 +199,16 @@ detail::CrossedPeriods<N> periods_to_cut(const HyperplaneFamily<N>& family, std:
   return crossed;
 }
 
-/// The height of the hyperplane <normal, x> = offset, rounded as the vertices. If cuts at places a period apart are
-/// equal, it is that of the place in the period, so that they are equal bit by bit.
+/// Whether cuts at places a period apart count as equal: if they are, or also if one is the other one, moved.
+enum class EqualCuts : unsigned char { in_place, also_moved };
+
+/// The height of the hyperplane <normal, x> = offset, rounded as the vertices. If cuts at places a period apart count
+/// as equal, it is that of the place in the period, so that they are equal bit by bit.
 template <class Real, int N>
-double level_of(const HyperplaneFamily<N>& family, const detail::CrossedPeriods<N>& crossed, double offset) {
-  if (!crossed.any || !crossed.is_straight) return family.template level<Real>(offset);
+double level_of(const HyperplaneFamily<N>& family, const detail::CrossedPeriods<N>& crossed, double offset,
+                EqualCuts equal) {
+  const bool is_modulo = crossed.is_straight || (equal == EqualCuts::also_moved && family.is_across_axis());
+  if (!crossed.any || !is_modulo) return family.template level<Real>(offset);
   return family.sign() * static_cast<double>(detail::rounded_at<Real>(detail::place_modulo(family, crossed, offset)));
 }
 
@@ -242,7 +247,7 @@ struct StackedCut {
 /// Groups the hyperplanes by normal. Throws InvalidArgument as `slice` does.
 template <int N, class Real>
 std::vector<StackedCut> group_by_normal(const Contour<N, Real>& contour, std::span<const Hyperplane<N>> hyperplanes,
-                                        std::vector<Parallels<N, Real>>& groups) {
+                                        EqualCuts equal, std::vector<Parallels<N, Real>>& groups) {
   std::vector<StackedCut> stack;
   for (const Hyperplane<N>& hyperplane : hyperplanes) {
     auto group = std::find_if(groups.begin(), groups.end(),
@@ -251,7 +256,7 @@ std::vector<StackedCut> group_by_normal(const Contour<N, Real>& contour, std::sp
       const HyperplaneFamily<N> family(hyperplane.normal);
       group = groups.insert(group, {hyperplane.normal, family, periods_to_cut<N>(family, contour.periods), {}, {}, {}});
     }
-    const double level = level_of<Real>(group->family, group->crossed, hyperplane.offset);
+    const double level = level_of<Real>(group->family, group->crossed, hyperplane.offset, equal);
     group->levels.push_back(level);
     stack.push_back({static_cast<std::size_t>(group - groups.begin()), level});
   }
@@ -272,7 +277,7 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
   const detail::CrossedPeriods<N> crossed = periods_to_cut<N>(family, contour.periods);
-  const double level = level_of<Real>(family, crossed, hyperplane.offset);
+  const double level = level_of<Real>(family, crossed, hyperplane.offset, EqualCuts::in_place);
   Contour<N - 1, Real> cut;
   if (crossed.any) {
     detail::require_sound(contour);
@@ -291,7 +296,7 @@ requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack
     const Contour<N, Real>& contour, std::type_identity_t<std::span<const Hyperplane<N>>> hyperplanes,
     const WorkOptions& work) {
   std::vector<Parallels<N, Real>> groups;
-  const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, groups);
+  const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, EqualCuts::in_place, groups);
   detail::require_sound(contour);
   const auto steps = static_cast<double>(groups.size() + stack.size());
   // one pass over the contour for each normal
@@ -332,7 +337,7 @@ void detail::for_each_cut(const Contour<N, Real>& contour, std::span<const doubl
   std::vector<Hyperplane<N>> hyperplanes;
   for (const double t : at) hyperplanes.push_back(Hyperplane<N>::across(N - 1, t));
   std::vector<Parallels<N, Real>> groups;
-  const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, groups);
+  const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, EqualCuts::also_moved, groups);
   detail::require_sound(contour);
   if (groups.empty()) return;
   Parallels<N, Real>& group = groups.front();
