@@ -84,7 +84,8 @@ def coordinates_of(curved: object, prepared: _arguments.Prepared) -> tuple[list[
     """The argument `curved` for the library. Arrays of float32 and float64 are used in place if the library's order of
     samples is theirs. Longitudes are continued across 180 degrees; those of a CurvedGrid once. Numbers that cannot be places
     become NaN; the second result has these, by coordinate."""
-    result, no_places = [], []
+    result: list[Coordinate] = []
+    no_places: list[NoPlaces] = []
     known = curved._places if isinstance(curved, CurvedGrid) else {}
     arrays = curved._in_order(prepared.is_reversed) if isinstance(curved, CurvedGrid) else _by_axis(curved, prepared.sizes)
     are_small = isinstance(curved, np.ndarray) and _are_small(curved)  # of points at once, as they are side by side
@@ -100,7 +101,8 @@ def coordinates_of(curved: object, prepared: _arguments.Prepared) -> tuple[list[
         if (key, prepared.is_reversed, unit) not in known:
             known[key, prepared.is_reversed, unit] = _places(f"curved[{key!r}]", values, unit, are_small, prepared)
         values, wrong = known[key, prepared.is_reversed, unit]
-        no_places += [] if wrong is None else [wrong]
+        if wrong is not None:
+            no_places.append(wrong)
         result.append((axis, along, *_evenly_spaced(values, prepared.is_reversed), unit))
     return result, no_places
 
