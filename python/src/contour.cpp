@@ -173,6 +173,19 @@ void bind_contour(py::module_& m) {
         },
         contour.contour);
   };
+  const auto cuts = [](const AnyContour& contour, const std::vector<double>& normal) {
+    return std::visit(
+        [&]<int N, class Real>(const Contour<N, Real>& c) {
+          if constexpr (N >= 3) {
+            if (c.periods.empty() || normal.size() != N) return true;
+            Hyperplane<N> hyperplane;
+            std::copy(normal.begin(), normal.end(), hyperplane.normal.begin());
+            return cuts_wrapped<N>(c.periods, hyperplane);
+          }
+          return true;
+        },
+        contour.contour);
+  };
   const auto of_vertices = [](const auto& c, const py::object& self) {
     return attribute_arrays(c.vertex_attributes, self);
   };
@@ -197,6 +210,8 @@ void bind_contour(py::module_& m) {
       .def_property_readonly("periods", of_contour(periods), "vector, dual and start of each period, flat")
       .def("has_all_offsets", has_all_offsets, py::arg("normal"),
            "Whether all hyperplanes with this normal cut the wrapped contour, whatever their offsets.")
+      .def("cuts_wrapped", cuts, py::arg("normal"),
+           "Whether hyperplanes with this normal cut the contour as it is wrapped.")
       .def_property_readonly("vertex_attributes", of_contour(of_vertices), "name -> (values, unit)")
       .def_property_readonly("simplex_attributes", of_contour(of_simplices), "name -> (values, unit)")
       .def_readonly("isovalue", &AnyContour::isovalue);

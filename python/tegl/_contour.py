@@ -155,9 +155,14 @@ class Contour(ArrayOrdered):
             return self._extent, "image"
         return _outside.extent_around(self.vertices), "contour"
 
+    def _has_range(self, direction: Sequence[float]) -> bool:
+        """Whether offsets of cuts in this direction have a range: if not, every one has a cut, or none has."""
+        normal = self._listed(direction)
+        return self._core.cuts_wrapped(normal) and not self._core.has_all_offsets(normal)
+
     def _require_places(self, axis: int, places: Sequence[float], given: Sequence) -> None:
         """Raises a ValueError unless all places along an axis lie in that extent. A periodic axis has every place."""
-        if self._core.has_all_offsets(self._listed([float(a == axis) for a in range(self.ndim)])):
+        if not self._has_range([float(a == axis) for a in range(self.ndim)]):
             return
         extent, of = self._extent_around()
         _outside.require_places(extent, axis, places, given, self.vertices.dtype, self.axis_names[axis],
@@ -209,7 +214,7 @@ class Contour(ArrayOrdered):
             places: typing.Any = _arguments.as_numbers("offset", offset) if is_list(offset) else \
                 _arguments.as_number("offset", offset)
             left = None
-            if is_checked and not self._core.has_all_offsets(self._listed(direction)):
+            if is_checked and self._has_range(direction):
                 extent, of = self._extent_around()
                 _outside.require_offsets(extent, direction, places if is_list(offset) else [places], self.vertices.dtype, of)
         else:

@@ -343,6 +343,11 @@ def test_periodic_axes_give_a_wrapped_contour(tmp_path):
             pytest.fail("a wrapped contour was converted")
     with pytest.raises(ValueError, match="expected an unrolled one"):
         contour.simplify(0.5)
+    # planes along which it does not repeat itself are refused for this, wherever they are
+    for offset in (3.0, 1e3):
+        with pytest.raises(ValueError, match="along which it does not repeat itself"):
+            contour.slice(normal=(1, 2**0.5, 0), offset=offset)
+    assert contour.slice(normal=(1, 1, 0), offset=1e3 + 0.5).check().is_closed
 
 
 def test_count_has_the_size_of_the_contour():

@@ -16,6 +16,8 @@
 #include "tegl/check.hpp"
 #include "tegl/io.hpp"
 #include "tegl/measure.hpp"
+#include "tegl/periodic.hpp"
+#include "tegl/slice.hpp"
 #include "tegl_program.hpp"
 
 namespace tegl::test {
@@ -288,6 +290,40 @@ TEST_F(PeriodicCommand, PlacesOnAShearedAxisAndLatticePlanesCutTheRepetition) {
     const nlohmann::json cuts = run_json(measured)["cuts"];
     EXPECT_NEAR(cuts[1]["size"].get<double>(), size, 1e-5);
   }
+}
+
+TEST_F(PeriodicCommand, PlanesThatAreNoLatticePlanesCutTheWholeUnrolledContour) {
+  // the face-centred cell: cuts across an axis repeat after half of the contour's extent
+  OwnedImage<double, 3> image;
+  image.grid.linear = {{{0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}};
+  for (Axis& axis : image.grid.axes) axis = Axis::uniform(24, 0.0, 1.0 / 24);
+  const double turn = 2 * std::numbers::pi / 24;
+  for (int k = 0; k < 24; ++k)
+    for (int j = 0; j < 24; ++j)
+      for (int i = 0; i < 24; ++i)
+        image.values.push_back(std::sin(turn * i) + 0.7 * std::cos(turn * j) + 0.8 * std::sin(turn * k + 0.5));
+  const std::string file = path("centred.nrrd"), saved = path("centred.vtkhdf"), output = path("cut.vtkhdf");
+  write_image(image.view(), file);
+  (void)run_json({"contour", file, "--iso", "0.4", "--periodic", "all", "-o", saved});
+  const auto contour = to_contour<3>(read_mesh(saved));
+  for (const std::vector<std::string>& input :
+       {std::vector<std::string>{saved}, {file, "--iso", "0.4", "--periodic", "all"}})
+    for (const double offset : {0.9, 0.2, 9.0}) {
+      std::vector<std::string> arguments = {"slice"};
+      arguments.insert(arguments.end(), input.begin(), input.end());
+      arguments.insert(arguments.end(), {"--plane", "1,0.1,0.03=" + std::to_string(offset), "-o", output});
+      const RunResult run = run_tegl(arguments);
+      if (offset == 9.0) {
+        EXPECT_NE(run.exit, 0);
+        EXPECT_THAT(run.err, HasSubstr("lies outside of the"));
+        continue;
+      }
+      EXPECT_EQ(run.exit, 0) << run.err;
+      EXPECT_THAT(run.err, HasSubstr("unrolled"));
+      const auto expected = slice(unroll(contour).contour, Hyperplane<3>{{1.0, 0.1, 0.03}, offset});
+      EXPECT_GT(expected.simplices.size(), 50u);
+      EXPECT_NEAR(measure(to_contour<2>(read_mesh(output))).size, measure(expected).size, 1e-4);
+    }
 }
 
 TEST_F(PeriodicCommand, PlacesBesideThePeriodOfATurnedImageAreItsPlaces) {

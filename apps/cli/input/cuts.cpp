@@ -113,12 +113,15 @@ std::string formula(const std::vector<double>& normal, const CutSpace& space) {
   return text;
 }
 
-/// The range of values along a cut's normal: from the lowest to the highest corner of the space's box.
+/// The range of values along a normal that does not have all offsets: from the lowest to the highest corner of the
+/// space's box. Such a cut across a period is one of the unrolled contour.
 CutAxis range_of(const Cut& cut, const CutSpace& space) {
   CutAxis range{cut.axis, 0.0, 0.0};
   for (std::size_t a = 0; a < space.axes.size(); ++a) {
     if (cut.normal[a] == 0.0) continue;
-    const auto [low, high] = std::minmax({cut.normal[a] * space.axes[a].first, cut.normal[a] * space.axes[a].last});
+    const CutAxis& axis = space.axes[a];
+    const auto [first, last] = axis.period > 0.0 ? axis.unrolled : std::array{axis.first, axis.last};
+    const auto [low, high] = std::minmax({cut.normal[a] * first, cut.normal[a] * last});
     range.first += low;
     range.last += high;
   }
@@ -181,14 +184,18 @@ std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::jo
 
 template <int N>
 CutAxis axis_with_periods(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
+  std::array<double, 2> unrolled = {axis.first, axis.last};
+  for (const Period<N>& period : periods) {  // `unroll` moves simplices to the end of the period
+    const double part = period.vector[static_cast<std::size_t>(a)];
+    unrolled[part < 0.0 ? 0 : 1] += part;
+  }
   if (const std::optional<CutPeriod<N>> cuts = take_period<N>(axis, periods, a)) {
     axis.first = cuts->first;
     axis.last = cuts->first + cuts->length;
-    return axis;
-  }
-  for (const Period<N>& period : periods) {  // `unroll` moves simplices to the end of the period
-    const double part = period.vector[static_cast<std::size_t>(a)];
-    (part < 0.0 ? axis.first : axis.last) += part;
+    axis.unrolled = unrolled;
+  } else {
+    axis.first = unrolled[0];
+    axis.last = unrolled[1];
   }
   return axis;
 }
@@ -373,9 +380,10 @@ std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allo
   }
   find_levels(cuts, space);
   for (Cut& cut : cuts) {
+    if (has_all_offsets(space, cut.normal)) continue;
     const CutAxis axis = range_of(cut, space);
     const double level = cut.level.value_or(cut.value);
-    cut.is_outside = !(level >= axis.first && level <= axis.last) && !has_all_offsets(space, cut.normal);
+    cut.is_outside = !(level >= axis.first && level <= axis.last);
     if (cut.is_outside && !allow_empty) throw outside_error(cut, axis, space.of);
   }
   return cuts;

@@ -3,6 +3,8 @@
 // Values of --at and --plane, the space that is cut, and the output file of each cut.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -52,15 +54,24 @@ struct CutAxis {
   double last = 0;
   double period = 0;      ///< if above 0: every place has a cut, and first to last is one period
   bool is_moved = false;  ///< whether cuts a period apart are not equal, but moved within their hyperplanes
+  /// Of a periodic axis: the range of the unrolled contour, for planes that do not cut the wrapped one.
+  std::array<double, 2> unrolled = {};
 };
 
 /// Makes an axis periodic, from its first place on, if every place across it has a cut (`cut_period`). Returns how cuts
-/// repeat then. N is 2 to 5; axes of 2D contours are not cut.
+/// repeat then. The unrolled contour ends where the axis ended, or all periods from its start. N is 2 to 5; axes of 2D
+/// contours are not cut.
 template <int N>
 std::optional<CutPeriod<N>> take_period(CutAxis& axis, std::span<const Period<N>> periods, int a) {
   if constexpr (N >= 3) {
     const std::optional<CutPeriod<N>> cuts = cut_period<N>(periods, unit_vector<N>(a));
     if (!cuts) return cuts;
+    double down = axis.last, up = axis.first;
+    for (const Period<N>& period : periods) {
+      const double part = period.vector[static_cast<std::size_t>(a)];
+      (part < 0.0 ? down : up) += part;
+    }
+    axis.unrolled = {std::min(axis.first, down), std::max(axis.last, up)};
     axis.period = cuts->length;
     axis.last = axis.first + axis.period;
     axis.is_moved = !cuts->is_straight;

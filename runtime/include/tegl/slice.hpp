@@ -107,7 +107,9 @@ requires DimensionBetween<N, 3, 5>
 ///
 /// Parts of vectors are compared by axis, so units of axes do not matter. Parts below a millionth of the longest part
 /// of a period along the same axis are taken for rounding; if all periods have less than a millionth of their lengths
-/// along an axis, all of these. Throws InvalidArgument if the normal is 0 or not finite. N = 3 to 5.
+/// along an axis, all of these. So are parts of the normal of at most 16 units of rounding of double beside its largest
+/// one, such as cos(π/2), and along axes of periods of 1e-7, if no height changes by a millionth. Throws
+/// InvalidArgument if the normal is 0 or not finite. N = 3 to 5.
 template <int N>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] bool cuts_wrapped(std::type_identity_t<std::span<const Period<N>>> periods,

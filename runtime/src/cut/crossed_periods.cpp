@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -22,6 +23,9 @@ namespace detail {
 namespace {
 
 constexpr double kRounding = 1e-6;
+/// Parts of a normal, beside the largest one: of doubles, such as cos(π/2), and of numbers in single precision.
+constexpr double kNormalRounding = 16 * std::numeric_limits<double>::epsilon();
+constexpr double kSingleRounding = 1e-7;
 /// Multiples of periods in a basis. With more, real numbers would seem to be multiples of one height.
 constexpr double kMostTimes = 32;
 constexpr double kFarthest = 1 << 29;  ///< periods to vertices and levels
@@ -61,6 +65,24 @@ Vector<N> longest_parts(const std::vector<Vector<N>>& vectors) {
   for (const Vector<N>& vector : vectors)
     for (int a = 0; a < N; ++a) longest[a] = std::max(longest[a], std::abs(vector[a]));
   return longest;
+}
+
+/// A normal without its parts that are rounding. Along an axis of periods, they may be those of single precision if
+/// heights do not depend on them either.
+template <int N>
+Vector<N> without_rounding(Vector<N> normal, const Vector<N>& longest) {
+  double most = 0.0, highest = 0.0;
+  for (int a = 0; a < N; ++a) {
+    most = std::max(most, std::abs(normal[a]));
+    highest = std::max(highest, std::abs(normal[a]) * longest[a]);
+  }
+  for (double& part : normal) {
+    const double height = std::abs(part) * longest[&part - normal.data()];
+    if (std::abs(part) <= kNormalRounding * most ||
+        (std::abs(part) <= kSingleRounding * most && height > 0.0 && height <= kRounding * highest))
+      part = 0.0;
+  }
+  return normal;
 }
 
 /// Whether all axes that the normal has a part along are combinations of the vectors. If not, cuts would drift along an
@@ -139,41 +161,93 @@ std::optional<std::size_t> reduce_heights(LatticeBasis<N>& basis, double roundin
   }
 }
 
+/// The inner product of vectors whose axes are divided by `longest`, so that their units do not matter.
+template <int N>
+double scaled_product(const Vector<N>& a, const Vector<N>& b, const Vector<N>& longest) {
+  double sum = 0.0;
+  for (int i = 0; i < N; ++i)
+    if (longest[i] > 0.0) sum += a[i] / longest[i] * (b[i] / longest[i]);
+  return sum;
+}
+
+/// Subtracts vectors along the hyperplanes from longer ones, until none gets shorter: simplices have smaller shares of
+/// short periods.
+template <int N>
+void shorten_within(LatticeBasis<N>& basis, std::size_t across, const Vector<N>& longest) {
+  const std::size_t count = basis.vectors.size();
+  constexpr double kShorter = 1.0 - 1e-9;  // so that rounding does not go on
+  bool is_shorter = true;
+  while (is_shorter) {
+    is_shorter = false;
+    for (std::size_t p = 0; p < count; ++p)
+      for (std::size_t q = 0; q < count; ++q) {
+        if (p == q || p == across || q == across) continue;
+        const Vector<N>&from = basis.vectors[p], &other = basis.vectors[q];
+        const double square = scaled_product<N>(other, other, longest), both = scaled_product<N>(from, other, longest);
+        const double multiple = std::round(both / square);
+        const double before = scaled_product<N>(from, from, longest);
+        if (multiple == 0.0 || !(before + multiple * (multiple * square - 2.0 * both) < kShorter * before)) continue;
+        basis.subtract(p, multiple, q);
+        is_shorter = true;
+      }
+  }
+}
+
+/// Lays the dual vectors of periods along the hyperplanes into these: the product with such a period does not change by
+/// multiples of the normal, but points have smaller shares. The periods keep their starts at the start of `across`.
+template <int N>
+void lay_duals_within(CrossedPeriods<N>& crossed, const Vector<N>& normal, const Vector<N>& longest) {
+  double square = 0.0;
+  for (int a = 0; a < N; ++a) square += normal[a] * longest[a] * (normal[a] * longest[a]);
+  for (Period<N>& period : crossed.within) {
+    double both = 0.0;
+    for (int a = 0; a < N; ++a) both += period.dual[a] * longest[a] * (normal[a] * longest[a]);
+    for (int a = 0; a < N; ++a) period.dual[a] -= both / square * normal[a];
+    period.start -= both / square * crossed.across.start * crossed.height;
+  }
+}
+
 }  // namespace
 
 template <int N>
 CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>& family, std::span<const Period<N>> periods) {
   CrossedPeriods<N> result;
   LatticeBasis<N> basis{{periods.begin(), periods.end()}, without_rounding<N>(periods), {}, {}, {}};
+  const Vector<N> longest = longest_parts<N>(basis.vectors);
+  const Vector<N> normal = without_rounding<N>(family.normal(), longest);
   double most = 0.0;
   for (std::size_t p = 0; p < periods.size(); ++p) {
     double height = 0.0, sum = 0.0;
     for (int a = 0; a < N; ++a) {
-      const double part = family.normal()[a] * basis.vectors[p][a];
+      const double part = normal[a] * basis.vectors[p][a];
       height += part;
       sum += std::abs(part);
     }
-    basis.heights.push_back(height);
+    basis.heights.push_back(std::abs(height) > kRounding * sum ? height : 0.0);
     most = std::max(most, sum);
     std::vector<double>& row = basis.sums.emplace_back(periods.size(), 0.0);
     row[p] = 1.0;
   }
   basis.times = basis.sums;
   const double rounding = kRounding * most;
-  result.any = std::any_of(basis.heights.begin(), basis.heights.end(),
-                           [&](double height) { return std::abs(height) > rounding; });
+  const auto is_above = [](double least) { return [least](double height) { return std::abs(height) > least; }; };
+  result.any = std::any_of(basis.heights.begin(), basis.heights.end(), is_above(0.0));
   if (!result.any) return result;
-  const Vector<N> longest = longest_parts<N>(basis.vectors);
-  result.has_cuts = are_axes_combinations<N>(family.normal(), basis.vectors, longest);
+  // a height that is rounding beside those of other periods, but not beside its own parts, is no multiple of theirs
+  result.has_cuts = are_axes_combinations<N>(normal, basis.vectors, longest) &&
+                    std::count_if(basis.heights.begin(), basis.heights.end(), is_above(0.0)) ==
+                        std::count_if(basis.heights.begin(), basis.heights.end(), is_above(rounding));
   if (!result.has_cuts) return result;
   const std::optional<std::size_t> across = reduce_heights(basis, rounding, result.is_other);
   result.has_cuts = across.has_value();
   if (!across) return result;
+  if (result.is_other) shorten_within<N>(basis, *across, longest);
   for (std::size_t p = 0; p < periods.size(); ++p)
     if (p != *across) result.within.push_back(basis.periods[p]);
   result.across = basis.periods[*across];
   result.times = basis.times[*across];
   result.height = family.height(result.across.vector);
+  if (result.is_other) lay_duals_within<N>(result, family.normal(), longest);
   result.is_straight = family.is_across_axis();
   for (int a = 0; a < N; ++a)
     if (a != family.dropped_axis() && std::abs(basis.vectors[*across][a]) > kRounding * longest[a])

@@ -24,7 +24,8 @@ struct CrossedPeriods {
   bool is_other = false;  ///< whether the basis is another one than the contour's periods
 
   // if they cross one, and there are cuts:
-  std::vector<Period<N>> within = {};  ///< the basis vectors along the hyperplanes
+  /// The basis vectors along the hyperplanes. Those of another basis are short, and so are their dual vectors.
+  std::vector<Period<N>> within = {};
   Period<N> across = {};               ///< the basis vector that crosses them
   std::vector<double> times = {};      ///< how many times `across` is in each period of the contour
   double height = 0.0;                 ///< of `across`; may be negative

@@ -146,6 +146,36 @@ TEST(PeriodicCuts, CutsDoNotDependOnTheUnitsOfAxes) {
     }
 }
 
+double waves_of_cell(const std::array<double, 3>& shares) { return waves_from<3>(shares, 0, 0.0); }
+
+TEST(PeriodicCuts, RoundingOfNormalsIsNoDirection) {
+  const auto cuts = [](const std::vector<Vector<3>>& vectors, const Vector<3>& normal) {
+    return cuts_wrapped<3>(periods_of(vectors), Hyperplane<3>{normal, 0.3});
+  };
+  const std::vector<Vector<3>> cube = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, along_z = {{0, 0, 1}};
+  for (const double rounding : {std::cos(std::numbers::pi / 2), -1e-17, 0.0}) {
+    EXPECT_TRUE(cuts(cube, {rounding, 0, 1}));
+    EXPECT_TRUE(cuts(along_z, {rounding, 0, 1}));
+    EXPECT_TRUE(cuts(along_z, {1, 0, rounding}));  // along the period
+    EXPECT_FALSE(cut_period<3>(periods_of(along_z), {1, 0, rounding}));
+  }
+  EXPECT_TRUE(cuts(cube, {std::cos(std::numbers::pi_v<float> / 2), 0, 1}));
+  EXPECT_FALSE(cuts(along_z, {1e-6, 0, 1}));
+  EXPECT_FALSE(cuts(along_z, {1, 0, 1e-6}));
+  // a short period is no rounding of a long one
+  const std::vector<Vector<3>> units = {{360, 0, 0}, {0, 1, 0}, {0, 0, 1e-4}};
+  EXPECT_FALSE(cuts(units, {1, 0, 1}));
+  EXPECT_FALSE(cuts(units, {1, 1, 0}));
+  EXPECT_TRUE(cuts(units, {1, 0, 3.6e6}));
+  EXPECT_TRUE(cuts(units, {0, 1, 2e4}));
+  EXPECT_TRUE(cuts(units, {0, 0, 1}));
+  // such a cut is the same as without it
+  const auto contour = wrapped<double>(torus_image<3, double>({12, 10, 12}, waves_of_cell), {0.0, 0.0, 1.0}, 0.4);
+  for (const double at : {0.3, 5.3})
+    EXPECT_NEAR(measure(slice(contour, Hyperplane<3>{{std::cos(std::numbers::pi / 2), 0, 1}, at})).size,
+                measure(slice(contour, Hyperplane<3>::across(2, 0.3))).size, 1e-9);
+}
+
 /// An image of a unit cell with these vectors, of a field by shares of the cell.
 template <int N, class F>
 OwnedImage<double, N> cell_image(const std::array<std::size_t, N>& sizes, const std::array<Vector<N>, N>& vectors,
@@ -171,8 +201,6 @@ double most_apart(const Contour<N, double>& contour, const Contour<N - 1, double
   }
   return most;
 }
-
-double waves_of_cell(const std::array<double, 3>& shares) { return waves_from<3>(shares, 0, 0.0); }
 
 TEST(PeriodicCuts, PlacesOnAShearedAxisAreThoseOfTheRepeatedField) {
   const auto image = cell_image<3>({24, 24, 24}, {{{1, 0, 0}, {0, 1, 0}, {0.3, 0, 1}}}, waves_of_cell);
@@ -298,12 +326,44 @@ TEST(PeriodicCuts, AxesOfTwoObliquePeriodsHaveClosedCuts) {
   EXPECT_FALSE(cuts_wrapped<3>(contour.periods, {{1.0, 0.0, 0.5}, 0.0}));
 }
 
+TEST(PeriodicCuts, AllLatticePlanesOfSmallMultiplesHaveCuts) {
+  const auto test = [](const std::array<Vector<3>, 3>& vectors, std::size_t samples, double most) {
+    const std::array<std::size_t, 3> sizes = {samples, samples, samples};
+    const auto contour = wrapped<double>(cell_image<3>(sizes, vectors, waves_of_cell), all_periodic<3>(), 0.4);
+    for (int x = -3; x <= 3; ++x)
+      for (int y = -3; y <= 3; ++y)
+        for (int z = 0; z <= 3; ++z) {
+          const Hyperplane<3> plane{{1.0 * x, 1.0 * y, 1.0 * z}, 0.37};
+          if ((x == 0 && y == 0 && z == 0) || !cuts_wrapped<3>(contour.periods, plane)) continue;
+          SCOPED_TRACE(testing::Message() << x << " " << y << " " << z);
+          const auto cut = slice(contour, plane);
+          EXPECT_TRUE(is_closed(check(cut)));
+          EXPECT_GT(cut.simplices.size(), 10u);
+          EXPECT_LT(most_apart(contour, cut, plane, waves_of_cell, 0.4), most);
+        }
+  };
+  test({{{1, 0, 0}, {0, 1, 0}, {0.3, 0, 1}}}, 24, 0.03);
+  test({{{0, 0.5, 0.5}, {0.5, 0, 0.5}, {0.5, 0.5, 0}}}, 12, 0.2);
+  // periods along the planes are short, and axes may have any units
+  const auto contour = wrapped<double>(torus_image<3, double>({24, 24, 24}, waves_of_cell), all_periodic<3>(), 0.4);
+  const auto scaled = scale_axes(contour, {360.0, 1.0, 1e-4});
+  const auto expected = slice(contour, Hyperplane<3>{{3, 3, 1}, 0.37});
+  const auto cut = slice(scaled, Hyperplane<3>{{3.0 / 360, 3, 1e4}, 0.37});
+  EXPECT_TRUE(is_closed(check(cut)));
+  EXPECT_EQ(cut.simplices.size(), expected.simplices.size());
+  for (const Period<2>& period : expected.periods) EXPECT_LT(std::hypot(period.vector[0], period.vector[1]), 3.5);
+}
+
 TEST(PeriodicCuts, SimplicesOfHalfASumOfPeriodsAreRefused) {
-  const auto contour = wrapped<double>(torus_image<3, double>({3, 3, 3}, noise_of<3>(5)), all_periodic<3>(), 0.0);
-  const Hyperplane<3> plane{{2.0, 3.0, 0.0}, 0.5};
+  // by three samples, the parts of a long cell reach over half of a short period in the plane
+  const auto image = cell_image<3>({3, 3, 3}, {{{1, 0, 0}, {8, 1, 0}, {0, 8, 1}}}, noise_of<3>(5));
+  const auto contour = wrapped<double>(image, all_periodic<3>(), 0.0);
+  const Hyperplane<3> plane{{1.0, 1.0, 0.0}, 0.5};
   EXPECT_TRUE(cuts_wrapped<3>(contour.periods, plane));
   expect_error(ErrorCode::InvalidArgument, "simplices of half of it", [&] { (void)slice(contour, plane); });
-  EXPECT_TRUE(is_closed(check(slice(contour, Hyperplane<3>{{1.0, 2.0, 0.0}, 0.5}))));
+  const auto cube = wrapped<double>(torus_image<3, double>({3, 3, 3}, noise_of<3>(5)), all_periodic<3>(), 0.0);
+  for (const Vector<3>& normal : {Vector<3>{1, 2, 0}, Vector<3>{2, 3, 0}})
+    EXPECT_TRUE(is_closed(check(slice(cube, Hyperplane<3>{normal, 0.5}))));
 }
 
 TEST(PeriodicCuts, PlacesFarFromAPeriodAreErrorsUnlessTheyAreModuloIt) {
@@ -339,7 +399,7 @@ TEST(PeriodicCuts, PlacesFarFromAnObliquePeriodHaveTheCutsOfNearOnes) {
     const std::array<Vector<3>, 3> sheared = {{{1, 0, 0}, {0, 1, 0}, {0.3, 0, 1}}};
     for (const auto& vectors : {primitive, sheared}) {
       const auto contour = wrapped<Real>(cell_image<3>({12, 12, 12}, vectors, waves_of_cell), all_periodic<3>(), 0.4);
-      for (const Vector<3>& normal : {Vector<3>{0, 0, 1}, Vector<3>{0, 0, -1}, Vector<3>{1, 0, 0}}) {
+      for (const Vector<3>& normal : {Vector<3>{0, 0, 1}, Vector<3>{0, 0, -1}, Vector<3>{1, 2, 1}}) {
         const std::optional<CutPeriod<3>> period = cut_period<3>(contour.periods, normal);
         ASSERT_TRUE(period);
         const Hyperplane<3> near{normal, 0.2 * period->length};
