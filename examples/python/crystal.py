@@ -19,7 +19,7 @@ import tegl
 
 
 def read_chgcar(text):
-    """Electrons per Å³. The file has them times the cell's volume, the first axis fastest; what follows is not read."""
+    """Electrons per Å³. The file has them times the cell's volume, the first axis fastest. The rest of the file is not read."""
     head, numbers = re.split(r"\n[ \t]*\n", text, maxsplit=1)
     lines = head.splitlines()
     vectors = np.array([line.split() for line in lines[2:5]], dtype=float)
@@ -62,6 +62,9 @@ else:
 if "BANDGRID_3D_BANDS" in text:
     fermi, bands, vectors = read_bxsf(text)
     fields = [(values, fermi) for values in bands if values.min() < fermi < values.max()]
+    if not fields:
+        sys.exit(f"{path.name}: none of the {len(bands)} bands has the Fermi energy {fermi:g} between its energies, as in an "
+                 f"insulator; expected a metal")
 else:
     values, vectors = read_chgcar(text)
     fields = [(values, np.quantile(values, share)) for share in (0.2, 0.5, 0.9)]

@@ -398,6 +398,7 @@ def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, pro
     kind = np.float64 if is_double else np.float32
 
     extent = prepared.extent if prepared.ndim >= 3 else None  # for others the library raises the error
+    wanted = [_outside.turned(extent, number, place, kind, unit) for place in wanted]
     if not _arguments.as_bool("allow_empty", allow_empty):
         _outside.require_places(extent, number, wanted, given, kind, prepared.names[number], unit, "image")
 

@@ -642,3 +642,14 @@ def test_fermi_surfaces_of_a_crystal_are_closed(monkeypatch):
     reports = [of["surface_of"](*field).check() for field in of["fields"]]
     assert all(report.is_closed and report.is_manifold for report in reports)
     assert [(report.components, report.euler) for report in reports] == [(3, 6), (7, 14), (1, 2)]
+
+
+def test_a_crystal_without_a_fermi_surface_has_a_message(monkeypatch, tmp_path):
+    script = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]) / "examples/python/crystal.py"
+    path = tmp_path / "insulator.bxsf"
+    bands = "".join(f"BAND: {number} " + " ".join([f"{low}", f"{low + 1}"] * 32) + "\n" for number, low in ((1, -3), (2, 4)))
+    path.write_text("BEGIN_INFO\nFermi Energy: 0.5\nEND_INFO\nBEGIN_BLOCK_BANDGRID_3D\nbands\nBEGIN_BANDGRID_3D_BANDS\n2\n4 4 4\n0 0 0\n"
+                    f"1 0 0\n0 1 0\n0 0 1\n{bands}END_BANDGRID_3D\n")
+    monkeypatch.setattr(sys, "argv", [str(script), str(path)])
+    with pytest.raises(SystemExit, match="insulator.bxsf: none of the 2 bands has the Fermi energy 0.5 between its energies"):
+        runpy.run_path(str(script))
