@@ -9,7 +9,7 @@ Without a file, the script takes a model of a CHGCAR. The cells (# %%) are as in
 
 # %% Files: words of numbers behind a head. Both readers give samples with the axes a, b, c, and the cell's vectors as rows
 import gzip
-import io
+import math
 import pathlib
 import re
 import sys
@@ -19,14 +19,15 @@ import tegl
 
 
 def read_chgcar(text):
-    """Electrons per Å³. The file has them times the cell's volume, the first axis fastest; what follows is not read."""
+    """Electrons per Å³. The file has them times the cell's volume, the first axis fastest. The rest of the file is not read."""
     head, numbers = re.split(r"\n[ \t]*\n", text, maxsplit=1)
     lines = head.splitlines()
     vectors = np.array([line.split() for line in lines[2:5]], dtype=float)
     scale = float(lines[1])  # a factor, or, if negative, the volume
     vectors *= scale if scale > 0 else (-scale / abs(np.linalg.det(vectors))) ** (1 / 3)
     sizes = [int(word) for word in numbers.split(maxsplit=3)[:3]]
-    values = np.array(numbers.split(maxsplit=3 + np.prod(sizes))[3:3 + np.prod(sizes)], dtype=float)
+    end = 3 + math.prod(sizes)
+    values = np.array(numbers.split(maxsplit=end)[3:end], dtype=float)
     return values.reshape(sizes, order="F") / abs(np.linalg.det(vectors)), vectors
 
 
@@ -37,8 +38,9 @@ def read_bxsf(text):
     words = text.split("BANDGRID_3D_BANDS")[1].split()  # count, sizes, origin, vectors, and "BAND:", number, energies
     sizes = [int(word) for word in words[1:4]]
     vectors = np.array(words[7:16], dtype=float).reshape(3, 3)
-    bands = [np.array(words[first:first + np.prod(sizes)], dtype=float).reshape(sizes)[:-1, :-1, :-1]
-             for first in range(18, 18 + int(words[0]) * (np.prod(sizes) + 2), np.prod(sizes) + 2)]
+    count = math.prod(sizes)
+    bands = [np.array(words[first:first + count], dtype=float).reshape(sizes)[:-1, :-1, :-1]
+             for first in range(18, 18 + int(words[0]) * (count + 2), count + 2)]
     return fermi, bands, vectors
 
 
@@ -53,11 +55,16 @@ def model_chgcar(size=24, edge=3.9):
 
 # %% Read the file, or a model
 path = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else None
-with (gzip.open if path and path.suffix == ".gz" else open)(path, "rt") if path else io.StringIO(model_chgcar()) as file:
-    text = file.read()
+if path is None:
+    text = model_chgcar()
+else:
+    text = (gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()).decode()
 if "BANDGRID_3D_BANDS" in text:
     fermi, bands, vectors = read_bxsf(text)
     fields = [(values, fermi) for values in bands if values.min() < fermi < values.max()]
+    if not fields:
+        sys.exit(f"{path.name}: none of the {len(bands)} bands has the Fermi energy {fermi:g} between its energies, as in an "
+                 f"insulator; expected a metal")
 else:
     values, vectors = read_chgcar(text)
     fields = [(values, np.quantile(values, share)) for share in (0.2, 0.5, 0.9)]

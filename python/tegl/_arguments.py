@@ -507,13 +507,17 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         array = _masked(array, mask if labelled is None or not is_xarray(mask) else in_order(mask, labelled))
     if hidden is not None and hidden.ndim == ndim and all(n in (1, size) for n, size in zip(hidden.shape, array.shape)):
         array = _masked(array, np.broadcast_to(~hidden, array.shape))
-    if coords is None:
-        coords = known if spacing is None and origin is None else None
-    elif len(coords := listed_coords(coords)) != ndim:
+    is_even, has_coords = spacing is not None or origin is not None, coords is not None
+    coords = listed_coords(coords) if has_coords else [None] * ndim
+    if len(coords) != ndim:
         raise ValueError(f"coords has {len(coords)} entries; expected one for each of {ndim} axes")
     spacings, origins = _per_axis(spacing, ndim, "spacing", 1.0), _per_axis(origin, ndim, "origin", 0.0)
-    if coords is not None and (spacing is not None or origin is not None):
+    if has_coords and is_even:
         raise ValueError("coords with spacing or origin; expected only coords, or only spacing and origin")
+    if units is not None and affine is None:  # units are those of the array's own coordinates; with a map, of the world
+        units = ["" if is_even or given is not None else unit for unit, given in zip(units, coords)]
+    if known is not None and not is_even:
+        coords = [own if given is None else given for own, given in zip(known, coords)]
     names = labels_of("axis_names", axis_names if axis_names is not None else names, ndim)
     units = labels_of("axis_units", axis_units if axis_units is not None else units, ndim)
     if axis_names is not None:
@@ -523,7 +527,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
         called = f"axis {axis}" + (f" ('{names[axis]}')" if names[axis] else "")
         if size == 0:
             raise ValueError(f"{called} has 0 samples; expected at least 1")
-        given = UniformAxis(origins[axis], spacings[axis]) if coords is None or coords[axis] is None else coords[axis]
+        given = UniformAxis(origins[axis], spacings[axis]) if coords[axis] is None else coords[axis]
         if isinstance(given, UniformAxis) and not (np.isfinite(given).all() and given.step != 0):
             raise ValueError(f"{called} has the origin {given.origin:g} and the spacing {given.step:g}; expected finite "
                              "numbers, and a spacing other than 0")

@@ -160,9 +160,20 @@ class Contour(ArrayOrdered):
         normal = self._listed(direction)
         return self._core.cuts_wrapped(normal) and not self._core.has_all_offsets(normal)
 
+    def _has_range_of_places(self, axis: int) -> bool:
+        return self._has_range([float(a == axis) for a in range(self.ndim)])
+
+    def _places_within(self, axis: int, places: list[float]) -> list[float]:
+        """Longitudes moved by turns into that extent. The library moves places on periodic axes."""
+        unit = self.axis_units[axis]
+        if self.ndim < 3 or not _tegl.is_longitude_unit(unit) or not self._has_range_of_places(axis):
+            return places
+        extent, _ = self._extent_around()
+        return [_outside.turned(extent, axis, place, self.vertices.dtype, unit) for place in places]
+
     def _require_places(self, axis: int, places: Sequence[float], given: Sequence) -> None:
         """Raises a ValueError unless all places along an axis lie in that extent. A periodic axis has every place."""
-        if not self._has_range([float(a == axis) for a in range(self.ndim)]):
+        if not self._has_range_of_places(axis):
             return
         extent, of = self._extent_around()
         _outside.require_places(extent, axis, places, given, self.vertices.dtype, self.axis_names[axis],
@@ -227,7 +238,7 @@ class Contour(ArrayOrdered):
             direction = [float(a == number) for a in range(self.ndim)]
             unit = self.axis_units[number]
             given = list(places) if is_list(places) else [places]
-            wanted = [_arguments.number_on_axis(place, unit) for place in given]
+            wanted = self._places_within(number, [_arguments.number_on_axis(place, unit) for place in given])
             if is_checked:
                 self._require_places(number, wanted, given)
             left = _outside.without_axis(self._extent, number)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import typing
 import warnings
 from collections.abc import Mapping, Sequence
@@ -44,7 +45,7 @@ class CurvedGrid:
         self._coordinates = _stored(arrays, "C", self._threads)
         self._in_fortran_order: dict[int | str, np.ndarray] = {}
         self._folds: dict[tuple, tuple[int, list[int]]] = {}
-        self._places: dict[tuple, tuple[np.ndarray, str]] = {}
+        self._places: dict[tuple, tuple[np.ndarray, NoPlaces | None]] = {}
 
     @property
     def coordinates(self) -> dict[int | str, np.ndarray]:
@@ -79,11 +80,12 @@ def masked_samples(curved: object) -> np.ndarray | None:
         return None
 
 
-def coordinates_of(curved: object, prepared: _arguments.Prepared) -> tuple[list[Coordinate], str]:
+def coordinates_of(curved: object, prepared: _arguments.Prepared) -> tuple[list[Coordinate], list[NoPlaces]]:
     """The argument `curved` for the library. Arrays of float32 and float64 are used in place if the library's order of
     samples is theirs. Longitudes are continued across 180 degrees; those of a CurvedGrid once. Numbers that cannot be places
-    become NaN; the second result names the first one, if there is any."""
-    result, no_place = [], ""
+    become NaN; the second result has these, by coordinate."""
+    result: list[Coordinate] = []
+    no_places: list[NoPlaces] = []
     known = curved._places if isinstance(curved, CurvedGrid) else {}
     arrays = curved._in_order(prepared.is_reversed) if isinstance(curved, CurvedGrid) else _by_axis(curved, prepared.sizes)
     are_small = isinstance(curved, np.ndarray) and _are_small(curved)  # of points at once, as they are side by side
@@ -99,20 +101,25 @@ def coordinates_of(curved: object, prepared: _arguments.Prepared) -> tuple[list[
         if (key, prepared.is_reversed, unit) not in known:
             known[key, prepared.is_reversed, unit] = _places(f"curved[{key!r}]", values, unit, are_small, prepared)
         values, wrong = known[key, prepared.is_reversed, unit]
-        no_place = no_place or wrong
+        if wrong is not None:
+            no_places.append(wrong)
         result.append((axis, along, *_evenly_spaced(values, prepared.is_reversed), unit))
-    return result, no_place
+    return result, no_places
 
 
 @contextlib.contextmanager
-def naming(no_place: str) -> typing.Iterator[None]:
-    """Adds a number that cannot be a place to the library's error about unknown coordinates."""
+def naming(no_places: list[NoPlaces]) -> typing.Iterator[None]:
+    """Adds a number that cannot be a place to the library's error about a cell with unknown coordinates, if it is the reason:
+    at a corner of this cell."""
     try:
         yield
     except ValueError as error:
-        if not no_place or "unknown coordinates" not in str(error):
+        cell = re.search(r"the cell at the sample \(([\d, ]+)\), which has unknown coordinates", str(error))
+        texts = [one.text_in(tuple(map(int, cell[1].split(", ")))) for one in no_places] if cell else []
+        text = next(filter(None, texts), "")
+        if not text:
             raise
-        raise type(error)(f"{error}. {no_place}") from None
+        raise type(error)(f"{error}. {text}") from None
 
 
 def warn_of_folds(curved: object, prepared: _arguments.Prepared, of_samples: list[Coordinate], axes: Sequence[int],
@@ -180,6 +187,26 @@ def _numbers(name: str, given: object) -> np.ndarray:
 _MOST = 1e19
 
 
+class NoPlaces(typing.NamedTuple):
+    """A coordinate with numbers that cannot be places."""
+
+    name: str
+    values: np.ndarray
+    most: float  #: of a place
+    expected: str
+    other_remedy: str  #: than a mask; "": none
+
+    def text_in(self, cell: tuple[int, ...]) -> str:
+        """About the first such number at a corner of the cell at this sample, also across the seam; "" if there is none."""
+        corners = np.ix_(*([i % size, (i + 1) % size] for i, size in zip(cell, self.values.shape)))
+        wrong = np.argwhere(np.abs(self.values[corners]) > self.most)
+        if not len(wrong):
+            return ""
+        first = tuple((i + int(step)) % size for i, step, size in zip(cell, wrong[0], self.values.shape))
+        return (f"{self.name}[{', '.join(map(str, first))}] is {self.values[first]:g}, which cannot be a place (expected "
+                f"{self.expected}); the mask of a masked array, as of numpy.ma.masked_equal, hides such samples{self.other_remedy}")
+
+
 def _are_small(values: np.ndarray) -> bool:
     """Whether it is certain, in one pass, that no number is beyond _MOST."""
     if values.dtype not in (np.float32, np.float64) or not values.flags.forc:
@@ -190,23 +217,20 @@ def _are_small(values: np.ndarray) -> bool:
 
 
 def _places(name: str, values: np.ndarray, unit: str, are_small: bool,
-            prepared: _arguments.Prepared) -> tuple[np.ndarray, str]:
+            prepared: _arguments.Prepared) -> tuple[np.ndarray, NoPlaces | None]:
     """Coordinates with NaN for numbers that cannot be places, as in files, and longitudes continued across 180 degrees: a
-    copy if any must change. Also a text about the first such number, or none. `are_small`: none is beyond _MOST."""
+    copy if any must change. Also these numbers, if there are any. `are_small`: none is beyond _MOST."""
     is_longitude = _tegl.is_longitude_unit(unit)
     most, expected = ((720.0, "-720 to 720") if is_longitude else (90.01, "-90 to 90") if unit in NORTH else
                       (_MOST, "at most 1e19"))
     if most == _MOST and (are_small or _are_small(values)):
-        return values, ""
-    least, greatest, no_place = np.fmin.reduce(values, axis=None), np.fmax.reduce(values, axis=None), ""
+        return values, None
+    least, greatest, no_places = np.fmin.reduce(values, axis=None), np.fmax.reduce(values, axis=None), None
     if least < -most or greatest > most:
-        wrong = np.abs(values) > most
-        first = tuple(int(i) for i in np.argwhere(wrong)[0])
-        no_place = (f"{name}[{', '.join(map(str, first))}] is {values[first]:g}, which cannot be a place (expected {expected}); "
-                    "the mask of a masked array, as of numpy.ma.masked_equal, hides such samples")
-        values = np.where(wrong, values.dtype.type(np.nan), values)
+        no_places = NoPlaces(name, values, most, expected, ", or shift longitudes by multiples of 360" if is_longitude else "")
+        values = np.where(np.abs(values) > most, values.dtype.type(np.nan), values)
         least, greatest = np.fmin.reduce(values, axis=None), np.fmax.reduce(values, axis=None)
-    return _continued(values, prepared) if is_longitude and greatest - least > 180 else values, no_place
+    return _continued(values, prepared) if is_longitude and greatest - least > 180 else values, no_places
 
 
 def _continued(values: np.ndarray, prepared: _arguments.Prepared) -> np.ndarray:

@@ -41,10 +41,11 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         In place of `level`: the contour at 0.5 of the mask that is 1 at the samples of this value, 0 elsewhere.
     spacing, origin
         Distance of the samples along each axis, and coordinate of the first one, in the order of the array's axes; or
-        one number for all.
+        one number for all. They take the place of the coordinates of an xarray or image, and of their units.
     coords
         The coordinates of the samples along each axis, instead of `spacing` and `origin`: ascending or descending, in
-        any steps; None for an axis whose coordinates are the indices.
+        any steps. None for an axis that keeps its coordinates and its unit: those of an xarray or image, otherwise the
+        indices. Other axes have no unit without `axis_units`, unless there is an affine map.
     affine
         A matrix of N x (N+1) or (N+1) x (N+1) numbers that maps these coordinates to world coordinates, as in NIfTI.
     mask
@@ -124,7 +125,9 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         several contours: a `tegl.CurvedGrid`. Samples without a coordinate, by the mask of a masked array, are missing. Default: the image's own, from `tegl.read`, and
         the longitude and latitude in two dimensions of an xarray, unless `spacing`, `origin`, `affine`, or `coords` for the
         axes of both are given in their place. Longitudes (by `axis_units`, degrees_east) are continued
-        across 180 degrees, in a copy if they must be. See docs/other-tilings.md.
+        across 180 degrees, in a copy if they must be. Numbers that cannot be places are unknown, and an error if the contour
+        needs them: fill values such as 1e20, latitudes beyond 90, and longitudes beyond 720 degrees (those of several turns
+        are to be shifted by multiples of 360). See docs/other-tilings.md.
 
     The columns of the vertices are in the order of the array's axes. Errors: ValueError, with the library's message;
     OverflowError for a contour that is too large; MemoryError.
@@ -165,10 +168,10 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     periodic = _periods.given_or_none(periodic)
-    of_samples, no_place = ([], "") if curved is None else _curved.coordinates_of(curved, prepared)
+    of_samples, no_places = ([], []) if curved is None else _curved.coordinates_of(curved, prepared)
     if curved is not None:
         _refuse_other_coordinates([one[0] for one in of_samples], prepared, spacing, origin, coords, affine, instead)
-    with _curved.naming(no_place), prepared.terms():
+    with _curved.naming(no_places), prepared.terms():
         given = [name for name, value in (("lattice", lattice), ("division", division), ("periodic", periodic),
                                           ("samples" if of_cells else "positions",
                                            None if positions == "linear" and not of_cells else positions),
@@ -395,6 +398,7 @@ def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, pro
     kind = np.float64 if is_double else np.float32
 
     extent = prepared.extent if prepared.ndim >= 3 else None  # for others the library raises the error
+    wanted = [_outside.turned(extent, number, place, kind, unit) for place in wanted]
     if not _arguments.as_bool("allow_empty", allow_empty):
         _outside.require_places(extent, number, wanted, given, kind, prepared.names[number], unit, "image")
 

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from . import _tegl
 from ._arguments import Prepared
 
 ALLOWED = "or allow_empty=True for an empty {}"
@@ -77,6 +78,15 @@ def is_outside(extent: np.ndarray | None, axis: int, place: float, dtype) -> boo
     with np.errstate(over="ignore"):
         low, at, high = np.array([extent[0, axis], place, extent[1, axis]]).astype(dtype)
     return not low <= at <= high
+
+
+def turned(extent: np.ndarray | None, axis: int, place: float, dtype, unit: str) -> float:
+    """A place along an axis of longitudes, moved by turns of 360 into the extent; unchanged if no turn leads there, and along
+    other axes."""
+    if extent is None or not _tegl.is_longitude_unit(unit) or not is_outside(extent, axis, place, dtype):
+        return place
+    moved = float(place - 360 * np.floor((place - extent[0, axis]) / 360))
+    return place if is_outside(extent, axis, moved, dtype) else moved
 
 
 def require_places(extent: np.ndarray | None, axis: int, places: Sequence[float], given: Sequence, dtype, name: str,

@@ -46,7 +46,7 @@ def _longitude_and_latitude(data) -> dict[int, object]:
 
 
 def without_longitude_and_latitude(data):
-    """An xarray without its coordinates of a curved grid, if tegl.read has not made it."""
+    """An xarray without a longitude and a latitude in two or more dimensions."""
     return data.drop_vars(list(_longitude_and_latitude(data).values())) if is_xarray(data) else data
 
 

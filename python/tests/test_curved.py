@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Curved grids: coordinates in arrays, as points and in a CurvedGrid."""
 
+import re
+
 import numpy as np
 import pytest
 import tegl
@@ -180,11 +182,36 @@ def test_numbers_that_cannot_be_places_are_errors_where_they_are_needed(fill, ax
                     tegl.contour(values, 0.5, curved=curved, axis_units=units, time_axis=time_axis)
                 text = str(raised.value)
                 assert "which has unknown coordinates; expected missing values there. curved" in text
-                assert text.endswith(f"curved[{axis}][3, 2, 1] is {np.float32(fill):g}, which cannot be a place (expected {expected}); "
-                                     "the mask of a masked array, as of numpy.ma.masked_equal, hides such samples")
+                cell = [int(i) for i in re.search(r"the sample \(([^)]*)\)", text)[1].split(", ")]
+                first = [3, max(2, cell[1]), 1]  # of the two in this cell
+                assert all(0 <= i - base <= 1 for i, base in zip(first, cell))
+                shift = ", or shift longitudes by multiples of 360" if unit == "degrees_east" else ""
+                assert text.endswith(f"curved[{axis}]{first} is {np.float32(fill):g}, which cannot be a place (expected {expected}); "
+                                     f"the mask of a masked array, as of numpy.ma.masked_equal, hides such samples{shift}")
             contour = tegl.contour(hidden, 0.5, curved=curved, axis_units=units, time_axis=time_axis)
             assert len(contour.simplices) == len(right.simplices) > 50
             assert time_axis == -1 or same_contours(contour, right)
+
+
+@pytest.mark.parametrize("time_axis", [0, -1])
+def test_errors_name_only_numbers_of_their_cell_that_cannot_be_places(time_axis):
+    values, points = curved_image(3, np.float64)
+    values[0, 0, 0] = np.nan
+    points[0, 0, 0, 0] = 1e20  # not needed
+    points[3, 2:4, 1, 1] = np.nan
+    for curved in (points, {axis: points[..., axis] for axis in range(3)}, tegl.CurvedGrid(points)):
+        with pytest.raises(ValueError, match="has unknown coordinates; expected missing values there$"):
+            tegl.contour(values, 0.5, curved=curved, time_axis=time_axis)
+
+
+def test_the_error_about_longitudes_over_several_turns_names_both_remedies():
+    lon, lat = np.meshgrid(np.linspace(0, 1500, 301), np.linspace(-10, 10, 5))
+    values = lat + 3 * np.sin(np.radians(7 * lon))
+    units = {"axis_units": ("degrees_north", "degrees_east")}
+    with pytest.raises(ValueError, match=r"curved\[1\]\[\d, \d+\] is 725, which cannot be a place \(expected -720 to 720\); the mask .* "
+                                         "hides such samples, or shift longitudes by multiples of 360$"):
+        tegl.contour(values[:, 140:], 0.5, curved={0: lat[:, 140:], 1: lon[:, 140:]}, **units)
+    tegl.contour(values[:, 140:], 0.5, curved={0: lat[:, 140:], 1: lon[:, 140:] - 1080}, **units)
 
 
 def test_bad_curved_points_are_errors():

@@ -321,20 +321,31 @@ def test_xarrays_keep_the_coordinates_of_a_curved_grid():
         tegl.slice(data, 0.0, at=0.5)
 
 
+def test_axes_without_given_coordinates_keep_those_of_an_image():
+    image = tegl.read(OCEAN)
+    some = [None, *image.coords[1:]]
+    kept = tegl.contour(image, 20.0, coords=some)
+    assert_same(kept, tegl.contour(image, 20.0))
+    assert kept.axis_units == (image.axis_units[0], "", "", "")[:len(image.axis_units)] and image.axis_units[0]
+    assert tegl.contour(image, 20.0, spacing=2.0, origin=1.0).axis_units == ("",) * len(image.axis_units)
+
+
 def test_xarrays_with_longitude_and_latitude_in_two_dimensions_are_curved():
     xarray = pytest.importorskip("xarray")
     lat, lon = np.meshgrid(np.linspace(-60, 60, 20), np.arange(0, 360, 10.0), indexing="ij")
     lat = lat + 3 * np.sin(np.radians(lon))
     values = lat - 25 + np.arange(3.0)[:, None, None]
     stored = (lon + 280) % 360 - 180  # in -180 to 180
-    coords = {"time": ("time", np.arange(3.0), {"units": "s"}), "TLAT": (("j", "i"), lat, {"units": "degrees_north"}),
+    times = np.array([100.0, 130.0, 160.0])
+    coords = {"time": ("time", times, {"units": "days since 1990-01-01"}), "TLAT": (("j", "i"), lat, {"units": "degrees_north"}),
               "TLONG": (("j", "i"), stored, {"units": "degrees_east"}), "area": (("j", "i"), lat * 0, {"units": "m2"})}
     data = xarray.DataArray(values, dims=("time", "j", "i"), coords=coords)
-    names, units = ("time", "TLAT", "TLONG"), ("s", "degrees_north", "degrees_east")
+    names, units = ("time", "TLAT", "TLONG"), ("days since 1990-01-01", "degrees_north", "degrees_east")
+    in_time = {"coords": [times, None, None]}
     curved = {1: lat[None], 2: stored[None]}
     contour = tegl.contour(data, 0.0)
     assert contour.axis_names == names and contour.axis_units == units
-    assert_same(contour, tegl.contour(values, 0.0, curved=curved, axis_names=names, axis_units=units))
+    assert_same(contour, tegl.contour(values, 0.0, curved=curved, axis_names=names, axis_units=units, **in_time))
     around = tegl.contour(data, 0.0, periodic="auto")
     assert around.periods.tolist() == [[0, 0, 360]]
     assert_same(around, tegl.contour(data, 0.0, periodic="TLONG"))
@@ -346,17 +357,21 @@ def test_xarrays_with_longitude_and_latitude_in_two_dimensions_are_curved():
     straight = data.assign_coords(i=np.arange(36) * 2.0, j=np.arange(20) * 1.0)
     assert tegl.contour(straight, 0.0).axis_names == ("time", "j", "i")
     other = tegl.contour(data, 0.0, curved={"j": lat[None], "i": lon[None]})
-    assert_same(other, tegl.contour(values, 0.0, curved={1: lat[None], 2: lon[None]}))
-    indices = tegl.contour(data.drop_vars(["TLAT", "TLONG"]), 0.0)
+    assert_same(other, tegl.contour(values, 0.0, curved={1: lat[None], 2: lon[None]}, **in_time))
+    assert_same(tegl.contour(data.drop_vars(["TLAT", "TLONG"]), 0.0), tegl.contour(values, 0.0, **in_time))
+    indices = tegl.contour(data, 0.0, spacing=1.0)
     assert_same(indices, tegl.contour(values, 0.0))
-    assert_same(tegl.contour(data, 0.0, spacing=1.0), indices)
+    assert indices.axis_units == ("", "", "") and indices.axis_names == ("time", "j", "i")
+    with_units = tegl.contour(data, 0.0, spacing=1.0, axis_units=("month", "", ""))
+    assert with_units.axis_units == ("month", "", "")
     # coordinates of both dimensions in place of longitude and latitude
     i, j = np.arange(36) * 2.0, np.arange(20) * 1.0
-    for coords in ([None, j, i], (range(3), list(j), i)):
+    for coords, unit in (([None, j, i], units[0]), ((list(times), list(j), i), "")):
         given = tegl.contour(data, 0.0, coords=coords)
-        assert given.axis_names == ("time", "j", "i")
+        assert given.axis_names == ("time", "j", "i") and given.axis_units == (unit, "", "")
+        assert np.ptp(given.vertices[:, 0]) == 60
         assert_same(given, tegl.contour(straight, 0.0))
-    assert_same(tegl.contour(data, 0.0, coords=[np.arange(3.0), None, None]), contour)
+    assert_same(tegl.contour(data, 0.0, coords=[times, None, None]), contour)
     with pytest.raises(ValueError, match=r"coords\[2\], but not coords\[1\], of an xarray with the coordinates 'TLAT' and 'TLONG' "
                                          "of a curved grid along both axes; expected both, in place of these, or None for both"):
         tegl.contour(data, 0.0, coords=[None, None, i])
@@ -627,3 +642,14 @@ def test_fermi_surfaces_of_a_crystal_are_closed(monkeypatch):
     reports = [of["surface_of"](*field).check() for field in of["fields"]]
     assert all(report.is_closed and report.is_manifold for report in reports)
     assert [(report.components, report.euler) for report in reports] == [(3, 6), (7, 14), (1, 2)]
+
+
+def test_a_crystal_without_a_fermi_surface_has_a_message(monkeypatch, tmp_path):
+    script = pathlib.Path(os.environ["TEGL_SOURCE_DIR"]) / "examples/python/crystal.py"
+    path = tmp_path / "insulator.bxsf"
+    bands = "".join(f"BAND: {number} " + " ".join([f"{low}", f"{low + 1}"] * 32) + "\n" for number, low in ((1, -3), (2, 4)))
+    path.write_text("BEGIN_INFO\nFermi Energy: 0.5\nEND_INFO\nBEGIN_BLOCK_BANDGRID_3D\nbands\nBEGIN_BANDGRID_3D_BANDS\n2\n4 4 4\n0 0 0\n"
+                    f"1 0 0\n0 1 0\n0 0 1\n{bands}END_BANDGRID_3D\n")
+    monkeypatch.setattr(sys, "argv", [str(script), str(path)])
+    with pytest.raises(SystemExit, match="insulator.bxsf: none of the 2 bands has the Fermi energy 0.5 between its energies"):
+        runpy.run_path(str(script))

@@ -130,6 +130,25 @@ def test_five_dimensions_are_cut_to_four_three_and_two(tmp_path):
         contour.slice(9)
 
 
+def test_cuts_across_longitudes_take_places_a_turn_away():
+    lon = np.array([160.0, 165, 170, 175, 180, -175, -170, -165, -160])  # continued to 200
+    array = np.cos(np.radians(np.linspace(0, 80, 9))) + np.linspace(-0.4, 0.4, 6)[:, None] + np.linspace(-0.3, 0.3, 5)[:, None, None]
+    grid = {"coords": [np.arange(5.0), np.arange(6.0), lon], "axis_names": ("z", "lat", "lon"), "axis_units": ("", "", "degrees_east")}
+    contour = tegl.contour(array, 0.6, dtype=np.float64, **grid)
+    expected = contour.slice(lon=195)
+    assert len(expected.simplices) > 0
+    for place in (-165, 555, 195):
+        assert_same(contour.slice(lon=place), expected)
+        assert_same(tegl.slice(array, 0.6, at=place, axis="lon", dtype=np.float64, **grid), tegl.slice(array, 0.6, at=195, axis="lon", dtype=np.float64, **grid))
+    assert_same(contour.slice(lon=[-165, 170])[0], expected)
+    assert len(contour.slice(lon=0, allow_empty=True).simplices) == 0
+    for cut in (lambda: contour.slice(lon=0), lambda: tegl.slice(array, 0.6, at=0, axis="lon", **grid)):
+        with pytest.raises(ValueError, match=r"\('lon'\) is 0.0; expected a place between 160.0 and 200.0"):
+            cut()
+    with pytest.raises(ValueError, match="is -165.0; expected a place between"):  # not of longitudes
+        tegl.slice(array, 0.6, at=-165, axis="x", coords=[np.arange(5.0), np.arange(6.0), np.arange(160.0, 201, 5)], axis_names=("z", "y", "x"))
+
+
 # Checks, components, measures.
 
 def test_check_finds_what_is_wrong():

@@ -160,8 +160,8 @@ TEST_F(LatticeCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
           "--periodic x with --pick");
   refused({"contour", file, "--iso", "0.2", "-o", ply, "--attribute", path("shorter.nrrd")},
           "expected the same lattice, numbers of samples and coordinates");
-  (void)run_json({"sample", "ball", "--size", "6", "-o", path("ball.nii")});
-  refused({"contour", path("ball.nii"), "--iso", "0", "-o", ply, "--attribute", file},
+  (void)run_json({"sample", "ball", "--size", "6", "-o", path("ball.nrrd")});
+  refused({"contour", path("ball.nrrd"), "--iso", "0", "-o", ply, "--attribute", file},
           "an image on the lattice fcc, and the contour");
   refused({"slice", file, "--iso", "0.2", "--at", "z=0.5", "-o", ply, "--attribute", file},
           "--attribute on the lattice");

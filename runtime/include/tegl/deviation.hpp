@@ -41,7 +41,9 @@ struct Deviation {
 /// of `to` are grouped by height. A group without a border there that covers one point of the simplex covers all of it
 /// (by topology, without comparing sizes), so the group's height bounds the distance. If there is no such group, for
 /// instance next to borders, the distances of the corners bound the distances of all points between. A simplex with a
-/// loose bound is halved, up to 24 times; those with the largest bounds up to 400 times.
+/// loose bound is halved, up to 24 times; those with the largest bounds up to 400 times. A flat simplex is at most its
+/// thickness farther away than its neighbours across some facets. Simplices are measured in rounds of increasing size,
+/// each with the largest distance of the earlier ones, below which bounds need no refinement.
 ///
 /// So the bound holds up to the rounding of coordinates, with any gaps, folds or flat simplices; 1e-11 of an edge is
 /// added to most. The bound of a simplex is at most 1.25 times the distance of one of its points, or `least` (with

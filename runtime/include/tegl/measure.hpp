@@ -73,13 +73,14 @@ struct CutMeasures {
 /// contour's first time, the limit from above. This is the cut that `slice` makes, except if missing values leave no
 /// contour before that time: `slice` then takes the limit from above. Values beyond the contour give 0. The cuts of a
 /// wrapped contour are made as by `slice` and measured, one by each thread at a time; a content is as in Measures. If
-/// the last axis is periodic, every value has a cut.
+/// they cross a period, every value has a cut, and those of values that differ by multiples of `CutPeriod::length` are
+/// measured once: they are equal, or moved.
 ///
 /// Errors: InvalidArgument (a value or a coordinate that is not finite, a vertex number out of range, a wrapped contour
 /// unless `cuts_wrapped`, and as `slice`); Cancelled. O(#S + h) time, and that of `measure` for open faces, for h
 /// pairs of a simplex and its cut; memory as `measure`, plus up to 32 MiB, or 32 bytes for each value. Of a wrapped
 /// contour: O(#S + #V + h log h) time, and O(#S + #V) more for each 256 values; across a period O(c log c) more, and
-/// about 100 bytes for each of the c simplices that values touch, once for each multiple of the period. Thread-safe.
+/// about 100 bytes for each of the c simplices that values touch within one period. Thread-safe.
 template <int N, Coordinate Real>
 requires DimensionBetween<N, 3, 5>
 [[nodiscard]] std::vector<CutMeasures> measure_cuts(const Contour<N, Real>& contour, std::span<const double> at,

@@ -34,9 +34,9 @@ void look_up(const std::uint32_t* words, const WantedLists* faces, std::size_t c
       const unsigned second = faces[i].second >> f & 1u;
       of.wanted[f] = static_cast<std::uint16_t>(word >> (CubeListTable::kBits * second) & kNumber);
       of.second[f] = static_cast<std::uint16_t>(word >> CubeListTable::kBits & kNumber);
-      const unsigned vertices = (word >> (CubeListTable::kHasVertices + second) & 1u) << f;
+      const unsigned vertices = (word >> (CubeListTable::kFirstHasVertices + second) & 1u) << f;
       of.with_vertices = static_cast<std::uint8_t>(of.with_vertices | vertices);
-      of.with_choice = static_cast<std::uint8_t>(of.with_choice | (word >> CubeListTable::kHasChoice & 1u) << f);
+      of.with_choice = static_cast<std::uint8_t>(of.with_choice | (word >> CubeListTable::kHasChoiceOrPair & 1u) << f);
       of.with_pairs = static_cast<std::uint8_t>(of.with_pairs | (word >> CubeListTable::kHasPairs & 1u) << f);
     }
   }
@@ -75,10 +75,10 @@ void look_up(const std::uint32_t* words, const WantedLists* faces, std::size_t c
       const auto second = hn::ShiftRight<CubeListTable::kBits>(word);
       store(hn::IfThenElse(takes_second, second, word), found[i].wanted.data() + f);
       store(second, found[i].second.data() + f);
-      const auto flag = hn::IfThenElse(takes_second, hn::Set(d, 1u << CubeListTable::kHaveVertices),
-                                       hn::Set(d, 1u << CubeListTable::kHasVertices));
+      const auto flag = hn::IfThenElse(takes_second, hn::Set(d, 1u << CubeListTable::kSecondHasVertices),
+                                       hn::Set(d, 1u << CubeListTable::kFirstHasVertices));
       with_vertices |= bits_from(d, hn::TestBit(word, flag), f);
-      with_choice |= bits_from(d, hn::TestBit(word, hn::Set(d, 1u << CubeListTable::kHasChoice)), f);
+      with_choice |= bits_from(d, hn::TestBit(word, hn::Set(d, 1u << CubeListTable::kHasChoiceOrPair)), f);
       with_pairs |= bits_from(d, hn::TestBit(word, hn::Set(d, 1u << CubeListTable::kHasPairs)), f);
     }
     found[i].with_vertices = static_cast<std::uint8_t>(with_vertices);
@@ -109,9 +109,9 @@ CubeListTable::CubeListTable(Content content, Triangulation triangulation) noexc
       const unsigned first = entry.lists[by_centre ? 1 : 0], second = entry.lists[by_centre ? 2 : 0];
       const unsigned pairs = with_joins ? cube_joins()[number].pairs : 0;
       std::uint32_t word = first | (with_joins ? number : second) << kBits;
-      word |= flag(first, kHasVertices) | flag(second, kHaveVertices);
-      if (by_centre && entry.has_choice != 0) word |= 1u << kHasChoice;
-      if (pairs == 1) word |= 1u << kHasPair;
+      word |= flag(first, kFirstHasVertices) | flag(second, kSecondHasVertices);
+      if (by_centre && entry.has_choice != 0) word |= 1u << kHasChoiceOrPair;
+      if (pairs == 1) word |= 1u << kHasChoiceOrPair;
       if (pairs > 1) word |= 1u << kHasPairs;
       words_[signature + 256 * squares] = word;
     }

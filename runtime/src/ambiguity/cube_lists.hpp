@@ -23,11 +23,13 @@ class CubeListTable {
     by_centre,  ///< the lists of the choices `low` and `high`, which are equal if there is no choice
     with_joins  ///< the list of the choice `separate`, and the entry of the table of resolved cubes
   };
-  static constexpr unsigned kBits = 10;                             ///< of a number
-  static constexpr unsigned kHasVertices = 20, kHaveVertices = 21;  ///< flags: the first, second list has vertices
-  static constexpr unsigned kHasChoice = 22;                        ///< flag: the choice matters (by_centre)
-  static constexpr unsigned kHasPair = 22,
-                            kHasPairs = 23;  ///< flags: a pair of edges may join (with_joins), or several
+  static constexpr unsigned kBits = 10;  ///< of a number
+  // Flags:
+  static constexpr unsigned kFirstHasVertices = 20, kSecondHasVertices = 21;  ///< of the first, the second list
+  /// The choice matters (by_centre), or one pair of edges may join (with_joins): the two contents share this bit, which
+  /// `find_lists` returns as `with_choice`.
+  static constexpr unsigned kHasChoiceOrPair = 22;
+  static constexpr unsigned kHasPairs = 23;  ///< several pairs of edges may join (with_joins)
   static constexpr std::size_t kWords = std::size_t{64} << 8;
 
   /// Made at the first call for each content and triangulation.
@@ -49,7 +51,7 @@ struct WantedLists {
   std::uint64_t signatures, squares;
   unsigned second;
 };
-/// What is found for these.
+/// The lists of the cubes of a tesseract, and flags.
 struct FoundLists {
   ResolvedCubes::Lists wanted, second;
   // Sets of cubes, as bits:

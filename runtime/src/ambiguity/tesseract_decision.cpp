@@ -189,7 +189,7 @@ class WordResolver {
   [[nodiscard]] unsigned entry_of(std::size_t j, unsigned cube) const noexcept { return found_[j].second[cube]; }
 
   /// Decides the centres of cubes by the trilinear interpolant. Those with one pair of edges are listed without
-  /// branches and asked about together.
+  /// branches; whether they join is decided for all together.
   void decide_joins() noexcept {
     std::array<std::uint16_t, 8 * kWordBits> asked;  // 8 * tile + cube
     std::size_t count = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Measures of the cuts of a contour by values of its last coordinate: by sums over simplices (cut_sums.cpp), or of the
-// cuts of wrapped contours, which are made one after the other.
+// cuts of wrapped contours, which are made, as many at a time as there are threads.
 #include <cmath>
 #include <span>
 #include <vector>

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_minimum.hpp"
 #include "base/periods.hpp"
 #include "base/workers.hpp"
 
@@ -99,11 +100,21 @@ class Mover {
     const std::size_t count = contour_.simplices.size();
     std::vector<std::vector<Found>> parts(block_count(count, kBlock));
     std::atomic<bool> are_short = true;
+    std::atomic<std::size_t> too_long{count};
     for_each_block(count, kBlock, work_.threads, work_.progress,
                    [&](std::size_t block, std::size_t from, std::size_t to) {
-                     for (std::size_t s = from; s < to; ++s)
-                       if (!find_moves(s, parts[block])) are_short = false;
+                     for (std::size_t s = from; s < to; ++s) {
+                       const Fit fit = find_moves(s, parts[block]);
+                       if (fit == Fit::too_long) lower_to(too_long, s);
+                       if (fit == Fit::half_of_sum) are_short = false;
+                     }
                    });
+    if (too_long < count)
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("cut of a wrapped contour across a period, with simplex {} over more than {} periods of the "
+                      "cuts; expected shorter ones, or an unrolled contour",
+                      too_long.load(), kLongest));
     if (!are_short)
       throw Error(ErrorCode::InvalidArgument,
                   "cut of a wrapped contour along a sum of its periods, with simplices of half of it or more; expected "
@@ -140,9 +151,11 @@ class Mover {
     return true;
   }
 
-  /// Appends the simplex once for each multiple of the period by which it touches a level. Returns false if it is too
-  /// long for cuts.
-  [[nodiscard]] bool find_moves(std::size_t s, std::vector<Found>& found) const {
+  enum class Fit : unsigned char { fits, too_long, half_of_sum };
+
+  /// Appends the simplex once for each multiple of the period by which it touches a level. Returns whether it fits, or
+  /// is over more than kLongest periods, or over half of a sum of periods.
+  [[nodiscard]] Fit find_moves(std::size_t s, std::vector<Found>& found) const {
     const auto& simplex = contour_.simplices[s];
     std::array<double, N> apart;  // by corner: the periods to the place next to corner 0
     const auto range_at = [&](double times) {
@@ -157,7 +170,7 @@ class Mover {
     for (int j = 0; j < N; ++j) apart[j] = times_apart(simplex[0], simplex[j]);
     const auto [lowest, highest] = range_at(0.0);
     const double along = crossed_.height;
-    if (!(highest - lowest <= kLongest * std::abs(along))) return false;
+    if (!(highest - lowest <= kLongest * std::abs(along))) return Fit::too_long;
     const auto [from, to] = std::minmax({(levels_.front() - highest) / along, (levels_.front() - lowest) / along,
                                          (levels_.back() - highest) / along, (levels_.back() - lowest) / along});
     // a bit more at both ends, as moved coordinates are rounded: one period if the hyperplanes are oblique
@@ -173,7 +186,7 @@ class Mover {
       Found& one = found.emplace_back(Found{static_cast<Index>(s), {}});
       for (int j = 0; j < N; ++j) one.corners[j] = key_of(simplex[j], static_cast<std::int64_t>(times + apart[j]));
     }
-    return !crossed_.is_other || found.size() == before || is_short(s);
+    return !crossed_.is_other || found.size() == before || is_short(s) ? Fit::fits : Fit::half_of_sum;
   }
 
   void number_vertices() {

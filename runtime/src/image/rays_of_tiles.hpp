@@ -35,16 +35,15 @@ struct RaysOfTiles {
   [[nodiscard]] bool has_room(std::size_t count) const noexcept {
     return groups + (count + kGroup - 1) / kGroup <= kMostGroups;
   }
-  /// Adds a tile with `count` rays, at least one. Returns the place of the first; the others follow. `products`: of
-  /// TileHeights.
-  std::size_t add(const std::array<double, 16>& products, const TileBox& box, std::size_t count) noexcept {
-    const std::size_t first = groups * kGroup;
+  /// The place of the first ray of the tile that is added next; its others follow.
+  [[nodiscard]] std::size_t next_place() const noexcept { return groups * kGroup; }
+  /// Adds a tile with `count` rays, at least one. `products`: of TileHeights.
+  void add(const std::array<double, 16>& products, const TileBox& box, std::size_t count) noexcept {
     of_tiles[tiles].products = products;
     of_tiles[tiles].box = box;
     for (; count > kGroup; count -= kGroup) add_group(kGroup);
     add_group(count);
     ++tiles;
-    return first;
   }
   void clear() noexcept { groups = tiles = 0; }
 

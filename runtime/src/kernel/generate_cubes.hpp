@@ -22,9 +22,8 @@
 namespace tegl::detail {
 
 /// Collects the own vertices of cubes, and of tesseracts those at means of vertices on edges and on rays, and writes
-/// many at once:
-/// their arithmetic is done in the lanes of registers, and without branches on the kind of each, which noise makes hard
-/// to predict. One per thread.
+/// many at once: their arithmetic is done in the lanes of registers, and without branches on the kind of each, which
+/// noise makes hard to predict. One per thread.
 template <int N, class Real>
 class CellVertices {
  public:
@@ -157,7 +156,7 @@ class CellVertices {
     RaysOfTiles& rays = of_tesseracts_.rays;
     of_tesseracts_.slabs[rays.tiles] = base[N - 1];
     const typename Placement<N, Real>::Cell in_cell(placement_, base);
-    std::size_t place = rays.groups * RaysOfTiles::kGroup;
+    std::size_t place = rays.next_place();
     const std::size_t before = of_tesseracts_.count;
     for (unsigned j = 0; j < filling.own_vertices; ++j) {
       const std::uint64_t mask = filling.masks[j];

@@ -13,8 +13,9 @@ namespace tegl::detail {
 /// An axis in messages, such as "axis 0 (lon)"; one without a name is x, y, z or t.
 [[nodiscard]] std::string label_of_axis(const Axis& axis, int number);
 
-/// What is wrong with a periodic axis of which samples so many `steps` (1 or 2) apart are half a period apart or more:
-/// the shorter way between two neighbours would lead round the other side. Empty if there are none. O(samples) time.
+/// The message about a periodic axis on which samples that are `steps` (1 or 2) steps apart are half a period apart or
+/// more: the shorter way between two neighbours would lead round the other side. Empty if there are none. O(samples)
+/// time.
 [[nodiscard]] std::string too_long_steps(const Axis& axis, int number, double period, int steps = 1);
 
 /// Throws InvalidArgument for bad periods, and for options that periodic extraction does not have.

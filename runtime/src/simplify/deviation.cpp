@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -86,6 +87,24 @@ void raise(double& value, double candidate) {
   }
 }
 
+/// What the measurements of several threads find besides bounds.
+struct Totals {
+  /// A simplex of `to`, and the distance of a part of a flat simplex of `from` that it is matched with.
+  struct Match {
+    double distance;
+    Index from, to;
+  };
+  std::mutex mutex = {};
+  std::uint64_t comparisons = 0;  ///< as in DeviationValues
+  std::vector<Match> of_flat = {};
+
+  void add(std::uint64_t more, const std::vector<Match>& matches) {
+    const std::lock_guard lock(mutex);
+    comparisons += more;
+    of_flat.insert(of_flat.end(), matches.begin(), matches.end());
+  }
+};
+
 /// Shared input of all measurements.
 template <int N>
 struct DeviationInput {
@@ -98,7 +117,7 @@ struct DeviationInput {
   const std::vector<NearPoint>& near;    ///< by vertex of `from`: a point of `to`, the nearest one if it matters
   double enough;                         ///< bounds below it are not refined
   std::vector<double>& of_to;            ///< empty if it is not returned
-  std::atomic<std::uint64_t>* comparisons;  ///< as in DeviationValues
+  Totals& totals;
 
   void raise_bound(Index simplex, double bound) const {
     if (!of_to.empty()) raise(of_to[simplex], bound);
@@ -115,9 +134,7 @@ class SimplexDeviation {
       : m_(measure),
         walk_(measure.to.corners, measure.neighbours),
         few_(measure.gradients, measure.neighbours, &measure.tree) {}
-  ~SimplexDeviation() {
-    if (m_.comparisons != nullptr) m_.comparisons->fetch_add(comparisons_, std::memory_order_relaxed);
-  }
+  ~SimplexDeviation() { m_.totals.add(comparisons_, of_flat_); }
   SimplexDeviation(const SimplexDeviation&) = delete;
   SimplexDeviation& operator=(const SimplexDeviation&) = delete;
 
@@ -132,8 +149,14 @@ class SimplexDeviation {
     const double walked = bound_by_walk(s, enough);
     if (walked < kInfinity) return walked;
     const double result = in_parts(enough, kMostParts, least);
+    const bool is_flat = FlatSimplices<N>::is_flat(m_.from.corners[s]);
     for (const Part& part : parts_)
-      for (const auto& [t, distance] : part.matches) m_.raise_bound(t, distance);
+      for (const auto& [t, distance] : part.matches) {
+        if (is_flat)
+          of_flat_.push_back({distance, s, t});
+        else
+          m_.raise_bound(t, distance);
+      }
     return result;
   }
 
@@ -466,6 +489,7 @@ class SimplexDeviation {
   std::vector<NearSimplex> near_;
   std::vector<Part> parts_;
   std::uint64_t comparisons_ = 0;
+  std::vector<Totals::Match> of_flat_;
   // Current part.
   std::vector<HeightRange> ranges_;
   ClippedSimplex<N> clipped_;
@@ -483,7 +507,7 @@ void require_scale(const std::array<double, N>& scale) {
 /// Refines the simplices with the largest bounds: a few of them determine the bound of the whole contour.
 template <int N>
 void refine_largest(const DeviationInput<N>& measure, Deviation& result, unsigned threads, const Progress& progress) {
-  FlatSimplices<N> flat(measure.from, measure.enough, result.of_from, threads);
+  const FlatSimplices<N> flat(measure.from, measure.enough, result.of_from, threads, part_of(progress, 0.0, 0.3));
   flat.lower(result.of_from);
   std::vector<std::size_t> order(result.of_from.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -495,7 +519,8 @@ void refine_largest(const DeviationInput<N>& measure, Deviation& result, unsigne
   // A bound needs no refinement below the largest bound of the other simplices.
   const double enough = std::max(result.least, order.size() > 1 ? result.of_from[order[most]] : 0.0);
   for_each_block(
-      std::max<std::size_t>(most, 1), 1, threads, progress, [&] { return SimplexDeviation<N>(measure); },
+      std::max<std::size_t>(most, 1), 1, threads, part_of(progress, 0.3, 1.0),
+      [&] { return SimplexDeviation<N>(measure); },
       [&](std::size_t, std::size_t first, std::size_t end, SimplexDeviation<N>& one) {
         for (std::size_t i = first; i < end; ++i) {
           double& bound = result.of_from[order[i]];
@@ -503,6 +528,10 @@ void refine_largest(const DeviationInput<N>& measure, Deviation& result, unsigne
         }
       });
   flat.lower(result.of_from);
+  // matches of flat simplices, whose bounds may be lower now
+  if (!result.of_to.empty())
+    for (const auto& [distance, s, t] : measure.totals.of_flat)
+      result.of_to[t] = std::max(result.of_to[t], std::min(distance, result.of_from[s]));
   result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
   for (double& bound : result.of_to) bound = std::min(bound, result.bound);
 }
@@ -539,16 +568,24 @@ double largest_of_samples(const ScaledSimplices<N>& from, const BoxTree<N>& tree
 }
 
 /// Blocks of kGrain simplices are measured in rounds: every 64th one first, then those half way between the earlier
-/// ones. The last round has half of all blocks.
-constexpr int kRounds = 7;
+/// ones. The last round has half of all blocks. Small contours have fewer rounds, so that all threads have work.
+constexpr int kMostMeasuredRounds = 7;
+constexpr std::size_t kLeastBlocks = 32;
 
-/// Measures the simplices of one round, and raises result.least to the largest attained distance.
+/// By the size of the contour alone: bounds do not depend on the number of threads.
+int measured_rounds(std::size_t simplices) {
+  int rounds = 1;
+  while (rounds < kMostMeasuredRounds && block_count(simplices, kGrain) >> rounds >= kLeastBlocks) ++rounds;
+  return rounds;
+}
+
+/// Measures the simplices of one round of `rounds`, and raises result.least to the largest attained distance.
 template <int N>
-void measure_round(const DeviationInput<N>& measure, int round, unsigned threads, const Progress& progress,
+void measure_round(const DeviationInput<N>& measure, int round, int rounds, unsigned threads, const Progress& progress,
                    Deviation& result) {
-  constexpr std::size_t kApart = std::size_t{1} << (kRounds - 1);
-  const std::size_t size = measure.from.simplices.size(), blocks = (size + kGrain - 1) / kGrain;
-  const std::size_t begin = round == 0 ? 0 : kApart >> round, apart = round == 0 ? kApart : 2 * begin;
+  const std::size_t most = std::size_t{1} << (rounds - 1);
+  const std::size_t size = measure.from.simplices.size(), blocks = block_count(size, kGrain);
+  const std::size_t begin = round == 0 ? 0 : most >> round, apart = round == 0 ? most : 2 * begin;
   if (begin >= blocks) return;
   for_each_block((blocks - begin + apart - 1) / apart, 1, threads, progress,
                  [&] { return SimplexDeviation<N>(measure); },
@@ -563,7 +600,7 @@ void measure_round(const DeviationInput<N>& measure, int round, unsigned threads
 
 template <int N>
 void measure_all(const ScaledSimplices<N>& from, const DeviationTarget<N>& target, double enough, unsigned threads,
-                 const Progress& progress, std::atomic<std::uint64_t>* comparisons, Deviation& result) {
+                 const Progress& progress, std::uint64_t* comparisons, Deviation& result) {
   const auto& [to, neighbours, open, tree, gradients] = target;
   // distances of vertices: exactly where they are needed
   const SimplexWalk<N> walk(gradients, neighbours);
@@ -574,18 +611,21 @@ void measure_all(const ScaledSimplices<N>& from, const DeviationTarget<N>& targe
       largest_of_samples(from, tree, walk, vertices.near(), result.least, threads, part_of(progress, 0.08, 0.12));
   const auto sufficient = [&] { return enough > 0.0 ? std::max(enough, kLeastShare * result.least) : result.least; };
   vertices.search_above(sufficient() / kLooseness, part_of(progress, 0.12, 0.15));
-  DeviationInput<N> measure{from,         to,           tree,       open, gradients, neighbours, vertices.near(),
-                            sufficient(), result.of_to, comparisons};
+  Totals totals;
+  DeviationInput<N> measure{from,         to,           tree,  open, gradients, neighbours, vertices.near(),
+                            sufficient(), result.of_to, totals};
   const Progress whole = part_of(progress, 0.15, 0.9);
   // The first rounds are small samples. They find larger distances, so that later ones need fewer close bounds.
   double done = 0.0;
-  for (int round = 0; round < kRounds; ++round) {
-    const double end = std::ldexp(1.0, round + 1 - kRounds);
+  const int rounds = measured_rounds(from.simplices.size());
+  for (int round = 0; round < rounds; ++round) {
+    const double end = std::ldexp(1.0, round + 1 - rounds);
     measure.enough = sufficient();
-    measure_round(measure, round, threads, part_of(whole, done, end), result);
+    measure_round(measure, round, rounds, threads, part_of(whole, done, end), result);
     done = end;
   }
   refine_largest(measure, result, threads, part_of(progress, 0.9, 1.0));
+  if (comparisons != nullptr) *comparisons += totals.comparisons;
 }
 
 }  // namespace

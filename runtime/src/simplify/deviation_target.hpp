@@ -3,7 +3,6 @@
 // Data of a contour for measurements of distances to it, prepared once for several of them.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <utility>
 
@@ -41,12 +40,12 @@ struct DeviationTarget {
   SimplexGradients<N> gradients;
 };
 
-/// What is returned besides the bound of the whole contour.
+/// Results besides the bound of the whole contour.
 struct DeviationValues {
   bool of_from = true, of_to = true;  ///< bounds by simplex
-  /// Raised by the number of comparisons of simplices with those near them, a measure of the time. It does not depend
-  /// on the number of threads.
-  std::atomic<std::uint64_t>* comparisons = nullptr;
+  /// Raised by the number of comparisons of parts of simplices with the simplices near them, which take most of the
+  /// time of measurements that take long. It does not depend on the number of threads.
+  std::uint64_t* comparisons = nullptr;
 };
 
 /// As `deviation`, with the scale of both contours, neither of which may be empty. `enough`: as in DeviationOptions.

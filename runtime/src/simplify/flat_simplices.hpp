@@ -18,10 +18,12 @@
 #include <limits>
 #include <vector>
 
+#include "base/workers.hpp"
 #include "mesh/simplex_shapes.hpp"
 #include "simplify/facet_neighbours.hpp"
 #include "simplify/scaled_simplices.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/work.hpp"
 
 namespace tegl::detail {
 
@@ -29,13 +31,26 @@ template <int N>
 class FlatSimplices {
  public:
   /// Finds the flat simplices with bounds above `enough`, and their neighbours. `bounds`: by simplex.
-  FlatSimplices(const ScaledSimplices<N>& contour, double enough, const std::vector<double>& bounds, unsigned threads) {
-    for (Index s = 0; s < bounds.size(); ++s)
-      if (bounds[s] > enough) add_if_flat(contour.corners[s], s);
-    if (flat_.empty()) return;
-    const FacetNeighbours<N> neighbours(contour.simplices, contour.points.size(), threads, {});
-    for (Flat& flat : flat_)
-      for (int corner = 0; corner < N; ++corner) flat.across[corner] = neighbours.across(flat.simplex, corner);
+  FlatSimplices(const ScaledSimplices<N>& contour, double enough, const std::vector<double>& bounds, unsigned threads,
+                const Progress& progress) {
+    std::vector<std::vector<Partition>> parts(block_count(bounds.size(), kBlock));
+    for_each_block(bounds.size(), kBlock, threads, part_of(progress, 0.0, 0.5),
+                   [&](std::size_t block, std::size_t first, std::size_t end) {
+                     for (std::size_t s = first; s < end; ++s)
+                       if (bounds[s] > enough) add_partitions(contour.corners[s], static_cast<Index>(s), parts[block]);
+                   });
+    for (const auto& part : parts) partitions_.insert(partitions_.end(), part.begin(), part.end());
+    if (partitions_.empty()) return;
+    const FacetNeighbours<N> neighbours(contour.simplices, contour.points.size(), threads, part_of(progress, 0.5, 1.0));
+    for (Partition& one : partitions_)
+      for (int corner = 0; corner < N; ++corner) one.across[corner] = neighbours.across(one.simplex, corner);
+  }
+
+  /// Whether some partition's parts are near each other.
+  static bool is_flat(const CornersN<N>& corners) {
+    std::vector<Partition> found;
+    add_partitions(corners, 0, found);
+    return !found.empty();
   }
 
   /// Lowers bounds to those of the neighbours and the distances from them.
@@ -43,10 +58,10 @@ class FlatSimplices {
     bool is_lower = true;
     for (int sweep = 0; is_lower && sweep < kMostSweeps; ++sweep) {
       is_lower = false;
-      for (const Flat& flat : flat_) {
-        const double bound = flat.bound(bounds);
-        if (!(bound < bounds[flat.simplex])) continue;
-        bounds[flat.simplex] = bound;
+      for (const Partition& one : partitions_) {
+        const double bound = one.bound(bounds);
+        if (!(bound < bounds[one.simplex])) continue;
+        bounds[one.simplex] = bound;
         is_lower = true;
       }
     }
@@ -54,13 +69,16 @@ class FlatSimplices {
 
  private:
   static constexpr Index kNone = FacetNeighbours<N>::kNone;
-  /// In longest edges. Others are bounded by their own prisms.
-  static constexpr double kFlat = 1e-2;
+  static constexpr std::size_t kBlock = 4096;
+  /// Distance of the parts, in longest edges. Simplices with larger ones are bounded by their own prisms.
+  static constexpr double kNear = 1e-2;
+  /// In longest edges: more than the rounding errors of distances.
+  static constexpr double kRounding = 1e-14;
   /// Flat simplices are mostly beside others that are not flat, or beside a few flat ones.
   static constexpr int kMostSweeps = 16;
 
-  /// A division of the corners of a simplex. Simplices may have several.
-  struct Flat {
+  /// A partition of the corners of a simplex into A and B.
+  struct Partition {
     double apart;  ///< distance of the hulls of its two parts
     Index simplex;
     unsigned corners;  ///< bit i: corner i is in B
@@ -88,15 +106,16 @@ class FlatSimplices {
     return distance_to_simplex<N>(PointN<N>{}, ways, count);
   }
 
-  void add_if_flat(const CornersN<N>& corners, Index s) {
-    const double least = kFlat * longest_edge<N>(corners);
-    for (unsigned part = 1; part + 1 < 1u << N; ++part) {
-      if (2 * std::popcount(part) > N) continue;  // its complement has fewer facets
-      if (const double apart = distance_of_parts(corners, part); apart <= least) flat_.push_back({apart, s, part});
-    }
+  static void add_partitions(const CornersN<N>& corners, Index s, std::vector<Partition>& found) {
+    // The content is at most the distance times the longest edge to the power N - 2, both without the factor (N - 1)!.
+    if (shape_of_simplex<N>(corners, norm(normal_of<N>(corners))) > kNear) return;
+    const double edge = longest_edge<N>(corners);
+    for (unsigned part = 1; part + 1 < 1u << N; ++part)
+      if (const double apart = distance_of_parts(corners, part); apart <= kNear * edge)
+        found.push_back({apart + kRounding * edge, s, part});
   }
 
-  std::vector<Flat> flat_;
+  std::vector<Partition> partitions_;
 };
 
 }  // namespace tegl::detail

@@ -4,6 +4,7 @@
 // another thread if there is time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
@@ -48,8 +49,12 @@ class MeasuredContour {
     preparation_->begin();
   }
 
-  /// As DeviationValues::comparisons, of all measurements.
-  [[nodiscard]] std::uint64_t comparisons() const noexcept { return comparisons_; }
+  /// Whether all measurements together took more than about ten seconds, or half a millisecond per simplex. Counted by
+  /// comparisons, so that it does not depend on the machine and the number of threads.
+  [[nodiscard]] bool took_long() const {
+    constexpr std::uint64_t kMany = 60'000'000, kManyOfSimplex = 2'000;
+    return comparisons_ > std::max(kMany, kManyOfSimplex * contour_.simplices.size());
+  }
 
   /// Only to_other.of_to and from_other.of_from are filled: bounds by simplex of the other contour.
   struct Deviations {
@@ -93,7 +98,7 @@ class MeasuredContour {
   std::optional<ScaledSimplices<N>> simplices_;
   std::optional<DeviationTarget<N>> target_;
   std::atomic<bool> is_wanted_ = true;
-  std::atomic<std::uint64_t> comparisons_ = 0;
+  std::uint64_t comparisons_ = 0;
   std::optional<TaskAside> preparation_;  ///< the last member: it waits for the thread that uses the others
 };
 

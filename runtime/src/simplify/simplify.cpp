@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <span>
@@ -59,7 +58,6 @@ constexpr double kRounding = 1e-12;
 /// Relative to the size of the contour: an error that counts as 0. Sums of squared distances are accurate only to its
 /// square.
 constexpr double kZeroError = 1e-8;
-constexpr std::uint64_t kMostComparisons = 60'000'000;  ///< a search ends after as many: about ten seconds
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -213,7 +211,7 @@ class Simplifier {
   std::optional<Round> reduce_within_error(double allowed, std::vector<double>& tolerance, bool to_count) {
     for (unsigned tried = 1; tried <= kMostRounds; ++tried) {
       Round round = one_round(tolerance, progress_after(0.25), 0);
-      if (to_count && (round.end != SimplifyEnd::count || has_searched_enough())) break;
+      if (to_count && (round.end != SimplifyEnd::count || measured_.took_long())) break;
       // Bounds below half of the allowed error need no refinement.
       measure(round, progress_after(1.0 / 3.0), 0.5 * allowed);
       if (own_error(round) <= allowed) return round;
@@ -234,7 +232,7 @@ class Simplifier {
     double low = smallest_tolerance(best);
     double factor = kErrorOfTolerance;
     bool found = false, failed = false;
-    const auto is_open = [&] { return low < most && own_error(best) > kPrecision * low && !has_searched_enough(); };
+    const auto is_open = [&] { return low < most && own_error(best) > kPrecision * low && !measured_.took_long(); };
     for (unsigned tried = 0; tried < kMostTries && is_open(); ++tried) {
       const double middle = std::sqrt(low * own_error(best));
       double allowed = middle;
@@ -275,7 +273,6 @@ class Simplifier {
     return std::max(low, least);
   }
 
-  [[nodiscard]] bool has_searched_enough() const { return measured_.comparisons() > kMostComparisons; }
   static double error(const Round& round) { return std::max(*round.error_of_original, *round.error_of_result); }
   /// The error without the earlier one.
   [[nodiscard]] double own_error(const Round& round) const { return error(round) - earlier_error_; }

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "cut/each_cut.hpp"
 #include "errors.hpp"
 #include "tegl/check.hpp"
 #include "tegl/curved.hpp"
@@ -386,7 +387,10 @@ TEST(PeriodicCuts, PlacesFarFromAPeriodAreErrorsUnlessTheyAreModuloIt) {
   auto wrong = contour;
   for (auto& period : wrong.periods) period.dual = {1e-9, 1e-9, 1e-9};
   wrong.vertices[contour.simplices[0][1]][2] += 1e6;
-  EXPECT_THROW((void)slice(wrong, {{0.0, 1.0, 1.0}, 0.5}), Error);
+  expect_error(ErrorCode::InvalidArgument,
+               "with simplex 0 over more than 128 periods of the cuts; expected shorter ones", [&] {
+                 (void)slice(wrong, {{0.0, 1.0, 1.0}, 0.5});
+               });
 }
 
 TEST(PeriodicCuts, PlacesFarFromAnObliquePeriodHaveTheCutsOfNearOnes) {
@@ -515,6 +519,38 @@ TEST(PeriodicCuts, ManyMeasuredCutsAreThoseOfSlices) {
       (void)measure_cuts(contour, places, {2, [](double done) { return done < 0.5; }});
     });
   }
+}
+
+TEST(PeriodicCuts, MeasuredCutsAcrossAnObliquePeriodAreMadeOnceForAllPlacesModuloIt) {
+  const auto image = cell_image<3>({12, 12, 12}, {{{1, 0, 0}, {0, 1, 0}, {0.3, 0, 1}}}, waves_of_cell);
+  const auto contour = wrapped<double>(image, all_periodic<3>(), 0.4);
+  ASSERT_FALSE(cut_period<3>(contour.periods, unit_vector<3>(2))->is_straight);
+  std::vector<double> places;  // over so many periods that the moved simplices would not fit into memory
+  for (int i = 0; i < 1000; ++i)
+    for (const double first : {0.25, 0.625}) places.push_back(first + 100'000.0 * (i - 500));
+  std::vector<std::size_t> uses;
+  detail::for_each_cut<3, double>(contour, places, {1, {}},
+                                  [&](std::span<const std::size_t> of_cut, const Contour<2, double>& cut, unsigned) {
+                                    uses.push_back(of_cut.size());
+                                    EXPECT_TRUE(is_closed(check(cut)));
+                                  });
+  EXPECT_EQ(uses, (std::vector<std::size_t>{1000, 1000}));
+  const std::vector<CutMeasures> found = measure_cuts(contour, places);
+  const std::array<Measures<2>, 2> slices = {measure(slice(contour, Hyperplane<3>::across(2, 0.25))),
+                                             measure(slice(contour, Hyperplane<3>::across(2, 0.625)))};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Measures<2>& expected = slices[i % 2];
+    EXPECT_EQ(found[i].at, places[i]);
+    EXPECT_EQ(found[i].size, found[i % 2].size);
+    EXPECT_EQ(found[i].content, found[i % 2].content);
+    EXPECT_EQ(found[i].size, expected.size);
+    EXPECT_EQ(found[i].content, expected.content);
+  }
+  EXPECT_NE(found[0].size, found[1].size);
+  // also where a slice would be an error
+  EXPECT_EQ(measure_cuts(contour, {0.25 + 0x1p40})[0].size, found[0].size);
+  // some periods further, the slice is the same one, moved
+  EXPECT_NEAR(measure(slice(contour, Hyperplane<3>::across(2, 7.25))).size, found[0].size, 1e-9);
 }
 
 TEST(PeriodicCuts, CoordinatesFarFromTheirPeriodAreErrors) {

@@ -236,7 +236,8 @@ void expect_points_on_rays_of_each_tile() {
       std::vector<std::array<double, 4>> ends(1 + random() % (i % 16 == 0 ? TesseractRays::kMost : 20));
       if (!rays.has_room(ends.size())) break;
       tiles.push_back({TileHeights<4>(heights, epsilon), box, ends, 0});
-      tiles.back().first = rays.add(tiles.back().heights.products(), box, ends.size());
+      tiles.back().first = rays.next_place();
+      rays.add(tiles.back().heights.products(), box, ends.size());
       for (std::size_t r = 0; r < ends.size(); ++r)
         for (std::size_t a = 0; a < 4; ++a) {
           const double end = random() % 2 == 0 ? static_cast<double>(random() % 2) : 0.5 + 0.5 * uniform(random);

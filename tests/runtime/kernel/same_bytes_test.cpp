@@ -126,6 +126,38 @@ TEST(SameBytes, OfFacesThatTheDataDecide) {
   }
 }
 
+/// With normals, rays of a tesseract are found one tesseract at a time; without, those of several together.
+template <class Real>
+void expect_same_places_with_normals(const Image<float, 4>& image, double isovalue, ExtractOptions options) {
+  SCOPED_TRACE(describe(options));
+  const auto plain = extract<Real>(image, isovalue, options);
+  options.normals = Normals::differences;
+  const auto with_normals = extract<Real>(image, isovalue, options);
+  EXPECT_GT(plain.vertices.size(), 1000u);
+  EXPECT_EQ(with_normals.normals.size(), plain.vertices.size());
+  EXPECT_TRUE(equal_bytes(plain.vertices, with_normals.vertices));
+  EXPECT_TRUE(equal_bytes(plain.simplices, with_normals.simplices));
+}
+
+TEST(SameBytes, OfVerticesInsideTesseractsWithAndWithoutNormals) {
+  for (int rule = 0; rule < 8; ++rule) {
+    ExtractOptions options;
+    options.triangulation = rule < 4 ? Triangulation::compact : Triangulation::barycentric;
+    options.ambiguity =
+        std::array{Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}[rule % 4];
+    for (const double epsilon : {0.0, 0.01}) {
+      options.epsilon = epsilon;
+      auto image = noise<float, 4>(slanted<4>({9, 7, 8, 6}, epsilon > 0.0), 101);
+      expect_same_places_with_normals<float>(image.view(), 0.5, options);
+      expect_same_places_with_normals<double>(image.view(), 0.5, options);
+    }
+    auto holes = noise_with_missing<float, 4>(slanted<4>({9, 7, 8, 6}, true), 102, 0.01);
+    for (std::size_t i = 3; i < holes.values.size(); i += 97)
+      holes.values[i] = (i % 2 == 0 ? 1.0f : -1.0f) * std::numeric_limits<float>::infinity();
+    expect_same_places_with_normals<float>(holes.view(), 0.5, options);
+  }
+}
+
 TEST(SameBytes, OfManyBatchesOfRows) {
   expect_same_bytes<float>(view_of(noise<float, 2>({600, 2000}, 91)), 0.5, {});
   expect_same_bytes<float>(view_of(noise<float, 3>(80, 92)), 0.5, {});

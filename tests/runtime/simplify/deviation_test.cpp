@@ -15,6 +15,7 @@
 #include "distance_oracle.hpp"
 #include "errors.hpp"
 #include "fields.hpp"
+#include "tegl/check.hpp"
 #include "tegl/extract.hpp"
 #include "tegl/hyperplane.hpp"
 #include "tegl/simplify.hpp"
@@ -64,6 +65,34 @@ TYPED_TEST(DeviationOf, NoiseIsBoundedFromAboveAndBelow) {
     EXPECT_GE(result.bound, sampled) << "seed " << seed;
     EXPECT_GE(result.bound, result.least) << "seed " << seed;
     EXPECT_LE(result.bound, 4.0 * std::max(result.least, sampled)) << "seed " << seed;
+  }
+}
+
+/// Contours through grid points have flat simplices, which are bounded by their neighbours.
+TYPED_TEST(DeviationOf, FlatSimplicesAreBoundedFromAboveAndBelow) {
+  constexpr int N = TypeParam::value;
+  for (std::uint64_t seed = 0; seed < (N == 4 ? 1 : 3); ++seed) {
+    auto image = noise<float, N>(N == 4 ? 3 : 9, seed);
+    for (float& value : image.values) value = std::round(4.0f * value);
+    for (const bool close : {false, true}) {
+      ExtractOptions extraction;
+      extraction.close = close;
+      const auto contour = extract<double>(image.view(), 2.0, extraction);
+      ASSERT_GT(check(contour).degenerate_simplices, 0u);
+      SimplifyOptions<N> options;
+      options.ratio = 0.5;
+      options.measure = false;
+      const auto simple = simplify(contour, options).contour;
+      for (const auto& [from, to] : {std::pair{&contour, &simple}, std::pair{&simple, &contour}}) {
+        const Deviation result = deviation(*from, *to);
+        EXPECT_GE(result.bound + 1e-12, result.least) << "seed " << seed;
+        for (std::size_t s = 0; s < from->simplices.size(); s += N == 4 ? 31 : 7) {
+          Contour<N, double> one = *from;
+          one.simplices = {from->simplices[s]};
+          ASSERT_GE(result.of_from[s] + 1e-12, sampled_deviation(one, *to, 5, seed)) << "simplex " << s;
+        }
+      }
+    }
   }
 }
 
