@@ -258,13 +258,19 @@ CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>& family, std::span<c
 template <class Real, int N>
 MovedLevel level_in_period(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset) {
   const double level = family.template level<double>(offset);
-  if (!crossed.is_straight && !is_near_period(crossed, level)) fail_far(family, crossed, "a cut across a period", level);
   const bool is_place = family.is_across_axis();
   const double sign = is_place ? family.sign() : 1.0;
   const double along = sign * crossed.height, start = crossed.across.start * along;
   const double moved = place_in_period(sign * level, std::min(start, start + along), std::abs(along));
   return {sign * (is_place ? static_cast<double>(rounded_at<Real>(moved)) : moved),
           crossed.is_straight ? 0.0 : std::round((sign * level - moved) / along)};
+}
+
+template <int N>
+void require_near(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset) {
+  const double level = family.template level<double>(offset);
+  if (crossed.any && !crossed.is_straight && !is_near_period(crossed, level))
+    fail_far(family, crossed, "a cut across a period", level);
 }
 
 template <int N>
@@ -285,11 +291,12 @@ void fail_far(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crosse
                   std::abs(crossed.height), sign * crossed.across.start * crossed.height, kFarthest));
 }
 
-#define TEGL_INSTANTIATE_CROSSED(N)                                                                        \
-  template CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>&, std::span<const Period<N>>);      \
+#define TEGL_INSTANTIATE_CROSSED(N)                                                                          \
+  template CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>&, std::span<const Period<N>>);        \
   template MovedLevel level_in_period<float>(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);  \
   template MovedLevel level_in_period<double>(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double); \
-  template bool is_near_period(const CrossedPeriods<N>&, double);                                          \
+  template void require_near(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);                  \
+  template bool is_near_period(const CrossedPeriods<N>&, double);                                            \
   template void fail_far(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, const std::string&, double);
 TEGL_INSTANTIATE_CROSSED(3)
 TEGL_INSTANTIATE_CROSSED(4)

@@ -47,10 +47,13 @@ struct MovedLevel {
 };
 
 /// The hyperplane <normal, x> = offset, moved into the period; its height is rounded to Real across an axis, as those
-/// of vertices. Throws InvalidArgument if it is far from the period, unless `is_straight`. The hyperplanes cross a
-/// period and have cuts.
+/// of vertices. The hyperplanes cross a period and have cuts.
 template <class Real, int N>
 MovedLevel level_in_period(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset);
+
+/// Throws InvalidArgument if the cut at this offset is moved from its period (not `is_straight`), and is far from it.
+template <int N>
+void require_near(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset);
 
 /// Whether a height is at most 2^29 periods from the start of `across`. Farther ones are too inexact.
 template <int N>

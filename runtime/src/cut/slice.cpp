@@ -273,6 +273,7 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
   const detail::CrossedPeriods<N> crossed = periods_to_cut<N>(family, contour.periods);
+  detail::require_near(family, crossed, hyperplane.offset);
   const auto [level, times] = level_of<Real>(family, crossed, hyperplane.offset);
   Contour<N - 1, Real> cut;
   if (crossed.any) {
@@ -294,6 +295,8 @@ requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack
     const WorkOptions& work) {
   std::vector<Parallels<N, Real>> groups;
   const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, groups);
+  for (std::size_t i = 0; i < stack.size(); ++i)
+    detail::require_near(groups[stack[i].parallels].family, groups[stack[i].parallels].crossed, hyperplanes[i].offset);
   detail::require_sound(contour);
   const auto steps = static_cast<double>(groups.size() + stack.size());
   // one pass over the contour for each normal

@@ -374,6 +374,9 @@ TEST(PeriodicCuts, PlacesFarFromAPeriodAreErrorsUnlessTheyAreModuloIt) {
       "a cut across a period has the coordinate 1000000000000 along axis 2, with the period 1 from 0; expected "
       "at most 536870912 periods",
       [&] { (void)slice(contour, Hyperplane<3>::across(2, 1e12)); });
+  expect_error(ErrorCode::InvalidArgument, "a cut across a period has the coordinate -1000000000000 along axis 2", [&] {
+    (void)slice_stack(contour, {Hyperplane<3>::across(2, 0.5), Hyperplane<3>::across(2, -1e12)});
+  });
   expect_error(ErrorCode::InvalidArgument, "the height 1e+300 over the hyperplane through 0", [&] {
     (void)slice(contour, {{1.0, 1.0, 0.0}, 1e300});
   });
