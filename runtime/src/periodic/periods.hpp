@@ -13,7 +13,7 @@ namespace tegl::detail {
 /// An axis in messages, such as "axis 0 (lon)"; one without a name is x, y, z or t.
 [[nodiscard]] std::string label_of_axis(const Axis& axis, int number);
 
-/// What is wrong with a periodic axis of which samples so many `steps` (1 or 2) apart are half a period apart or more:
+/// The message about a periodic axis of which samples so many `steps` (1 or 2) apart are half a period apart or more:
 /// the shorter way between two neighbours would lead round the other side. Empty if there are none. O(samples) time.
 [[nodiscard]] std::string too_long_steps(const Axis& axis, int number, double period, int steps = 1);
 
