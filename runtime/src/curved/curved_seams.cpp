@@ -230,19 +230,28 @@ double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a
   return growth < 0.0 ? -length : length;
 }
 
-/// Throws InvalidArgument for a length of a seam along a curved axis of which the step across the seam, in the mean of
-/// all rows, is half or more. Single rows may have other steps, as those beside the poles of a tripolar grid.
+/// Throws InvalidArgument for a length of a seam along a curved axis unless the step across the seam, in the mean of
+/// all rows, has the direction in which the coordinates grow, and is less than half the length. Single rows may have
+/// other steps, as those beside the poles of a tripolar grid.
 template <int N>
 void require_short_step(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, double length) {
   for (const CurvedAxis& one : curved) {
     if (one.axis != a || (one.along >> a & 1u) == 0) continue;
-    const double step = length - mean_growth(grid, one, a);
-    if (std::isnan(step) || std::abs(step) < 0.5 * std::abs(length)) continue;
-    throw Error(
-        ErrorCode::InvalidArgument,
-        fmt::format("the period of {}, a curved axis, is {}, and the step across the seam is {}, in the mean of "
-                    "all rows; expected less than half the period, or a period in the unit of the coordinates",
-                    detail::label_of_axis(grid.axes[a], a), std::abs(length), std::abs(step)));
+    constexpr double kRounding = 1e-6;  // of the length: coordinates may be of single precision
+    const double growth = mean_growth(grid, one, a), step = length - growth;
+    if (std::isnan(step) || (step / length > kRounding && step / length < 0.5)) continue;
+    const std::string start = fmt::format("the period of {}, a curved axis, is {}, and ",
+                                          detail::label_of_axis(grid.axes[a], a), std::abs(length));
+    if (std::abs(step) < 0.5 * std::abs(length))
+      throw Error(ErrorCode::InvalidArgument,
+                  start + fmt::format("the last coordinates are {} from the first ones, in the mean of all rows; "
+                                      "expected a longer period, or samples without the last ones, if these repeat "
+                                      "the first ones",
+                                      std::abs(growth)));
+    throw Error(ErrorCode::InvalidArgument,
+                start + fmt::format("the step across the seam is {}, in the mean of all rows; expected less than half "
+                                    "the period, or a period in the unit of the coordinates",
+                                    std::abs(step)));
   }
 }
 

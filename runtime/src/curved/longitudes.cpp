@@ -190,8 +190,9 @@ class Continued {
   Pieces pieces_;
 };
 
-/// 360, if all steps are less than half a turn, and the first sample follows the last one by one that is positive.
-double turn_of(const Axis& axis, int a) {
+/// 360, if the gap behind the last sample is positive and less than half a turn, and so are all steps: in 5D, these may
+/// be longer (`check_periods`).
+double turn_of(const Axis& axis, int a, bool may_have_long_steps) {
   constexpr double kTolerance = 1e-3;  // of a step: coordinates in files may be of single precision
   const double length = std::abs(axis[axis.size() - 1] - axis[0]);
   const double step = length / static_cast<double>(axis.size() - 1);
@@ -209,6 +210,7 @@ double turn_of(const Axis& axis, int a) {
         fmt::format("but its samples span {}, and the gap behind them is {}; expected less than 180, or a given "
                     "period, such as {}",
                     length, kTurn - length, length + step));
+  if (may_have_long_steps) return kTurn;
   if (const std::string reason = detail::too_long_steps(axis, a, kTurn); !reason.empty())
     throw Error(ErrorCode::InvalidArgument, reason);
   return kTurn;
@@ -221,7 +223,7 @@ requires DimensionBetween<N, 2, 5> AxisPeriods<N> default_periods(const Grid<N>&
   AxisPeriods<N> periods = sample_periods(grid, axes);
   for (const int a : axes) {
     const Axis& axis = grid.axes[static_cast<std::size_t>(a)];
-    if (is_longitude_unit(axis.unit)) periods[static_cast<std::size_t>(a)] = turn_of(axis, a);
+    if (is_longitude_unit(axis.unit)) periods[static_cast<std::size_t>(a)] = turn_of(axis, a, N == 5);
   }
   return periods;
 }

@@ -102,10 +102,14 @@ std::string too_long_steps(const Axis& axis, int number, double period, int step
                          "two steps, from {} to {}, are {}; expected two steps of less than half the period, "
                          "as cells extend over two",
                          axis[i], to, length);
-    if (!is_across)
-      return start + fmt::format("the step from {} to {} is {}; expected steps of less than half the period", axis[i],
-                                 to, length);
     const double span = length_of(axis), likely = span + span / static_cast<double>(count - 1);
+    if (!is_across) {
+      const bool is_default = !is_longitude_unit(axis.unit) && std::abs(period - likely) <= 1e-12 * likely;
+      return fmt::format(
+          "the period of {} is {}{}, and the step from {} to {} is {}; expected steps of less than half "
+          "the period",
+          label_of_axis(axis, number), period, is_default ? " (length plus mean step)" : "", axis[i], to, length);
+    }
     return start + fmt::format(
                        "the step across the seam, from {} to {}, is {}; expected steps of less than half the "
                        "period, or a period in the unit of the axis, such as {:.6g}",

@@ -483,6 +483,27 @@ TEST(CurvedSeams, PeriodsInAnotherUnitAreErrors) {
   EXPECT_EQ(seams_of(500.0)[0].vector, (Vector<2>{500.0, 0.0}));  // a gap, but a shorter one
 }
 
+TEST(CurvedSeams, PeriodsThatAreNotLongerThanTheSamplesAreErrors) {
+  for (const bool descends : {false, true}) {
+    SCOPED_TRACE(descends);
+    std::vector<CurvedAxis> curved;
+    const auto image = globe(0.0, curved);
+    for (CurvedAxis& one : curved)
+      if (one.axis == 0 && descends)
+        for (double& x : one.values) x = -x;
+    const auto seams_of = [&](double period) {
+      return find_seams<2>(image.grid, curved, std::array{0}, std::array{period});
+    };
+    expect_error(ErrorCode::InvalidArgument,
+                 "the period of axis 0 (x), a curved axis, is 350, and the last coordinates are 350 from the first "
+                 "ones, in the mean of all rows; expected a longer period",
+                 [&] { (void)seams_of(350.0); });
+    expect_error(ErrorCode::InvalidArgument, "is 340, and the last coordinates are 350 from the first ones",
+                 [&] { (void)seams_of(340.0); });
+    EXPECT_EQ(seams_of(351.0)[0].vector, (Vector<2>{descends ? -351.0 : 351.0, 0.0}));
+  }
+}
+
 TEST(CurvedSeams, WrongSeamsAreErrors) {
   std::vector<CurvedAxis> curved;
   const auto image = globe(0.0, curved);

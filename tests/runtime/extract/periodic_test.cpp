@@ -362,6 +362,9 @@ TEST(Periodic, StepsOfHalfAPeriodAndMoreAreRefused) {
   refuses("or a period in the unit of the axis, such as 6.28319", radians, 360.0);
   refuses("the step across the seam, from 3 to 6, is 3; expected", Axis::uniform(4, 0.0, 1.0), 6.0);
   refuses("the step across the seam, from -3 to -10, is 7; expected", Axis::uniform(4, 0.0, -1.0), 10.0);
+  refuses("is 15 (length plus mean step), and the step from 1 to 10 is 9; expected steps of less than half the period",
+          Axis::rectilinear({0.0, 1.0, 10.0}), 15.0);
+  refuses("is 16, and the step from 1 to 10 is 9", Axis::rectilinear({0.0, 1.0, 10.0}), 16.0);
   const auto last = torus_image<4>({3, 3, 3, 3}, noise_of<4>(1));
   expect_error(ErrorCode::InvalidArgument, "the period of axis 3 (t) is 100, and the step across the seam", [&] {
     (void)wrapped(last, {0.0, 0.0, 0.0, 100.0}, 0.0);
@@ -604,6 +607,15 @@ TEST(Periodic, LongitudesHaveAPeriodOf360) {
   refuses("the gap behind them is 180", Axis::uniform(3, 0.0, 90.0));
   refuses("axis 0 (lon) is 360, and the step from 20 to 215 is 195; expected steps of less than half the period",
           Axis::rectilinear({0.0, 20.0, 215.0, 270.0}));
+  Grid<5> in_5d;
+  in_5d.axes[0] = Axis::rectilinear({0.0, 20.0, 215.0, 270.0});  // long steps are no error in 5D
+  in_5d.axes[0].unit = "degrees_east";
+  for (std::size_t a = 1; a < 5; ++a) in_5d.axes[a] = Axis::uniform(3);
+  EXPECT_EQ(default_periods<5>(in_5d, std::array{0})[0], 360.0);
+  in_5d.axes[0] = Axis::uniform(4, 120.0, 10.0);
+  in_5d.axes[0].unit = "degrees_east";
+  expect_error(ErrorCode::InvalidArgument, "the gap behind them is 330",
+               [&] { (void)default_periods<5>(in_5d, std::array{0}); });
   refuses("has 2 samples", Axis::uniform(2, 0.0, 180.0));
 }
 
