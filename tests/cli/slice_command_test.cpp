@@ -346,6 +346,42 @@ TEST_F(Slice, TakesTheAxisByItsOwnName) {
   EXPECT_THAT(other.err, HasSubstr("MONTH"));
 }
 
+TEST_F(Slice, AcrossLongitudesTakesPlacesATurnAway) {
+  for (const std::size_t axis : {0, 2}) {  // across the last axis, only layers are read
+    SCOPED_TRACE(axis);
+    OwnedImage<float, 3> image;
+    for (std::size_t a = 0; a < 3; ++a) {
+      image.grid.axes[a] = Axis::uniform(9, -20.0, 5.0);
+      image.grid.axes[a].name = std::string(1, "pqr"[a]);
+    }
+    image.grid.axes[axis] = Axis::uniform(9, 160.0, 5.0);
+    image.grid.axes[axis].name = "lon";
+    image.grid.axes[axis].unit = "degrees_east";
+    for (int k = 0; k < 9; ++k)
+      for (int j = 0; j < 9; ++j)
+        for (int i = 0; i < 9; ++i) image.values.push_back(static_cast<float>(4.2 - std::hypot(i - 4, j - 4, k - 4)));
+    const std::string input = path("ball.nc"), saved = path("ball.vtkhdf");
+    write_image(image.view(), input);
+    ASSERT_EQ(run_tegl({"contour", input, "--iso", "0", "-o", saved}).exit, 0);
+    for (const bool of_saved : {false, true}) {
+      const auto arguments = [&](const std::string& place) {
+        std::vector<std::string> all = {"slice", of_saved ? saved : input, "--at", place, "-o", path("cut.ply")};
+        if (!of_saved) all.insert(all.end(), {"--iso", "0"});
+        return all;
+      };
+      const auto cut = [&](const std::string& place) {
+        const RunResult run = run_tegl(arguments(place));
+        EXPECT_EQ(run.exit, 0) << run.err;
+        return bytes(path("cut.ply"));
+      };
+      const std::string expected = cut("lon=195");
+      for (const char* const place : {"lon=-165", "lon=555"}) EXPECT_EQ(cut(place), expected) << place;
+      EXPECT_THAT(run_tegl(arguments("lon=0")).err, HasSubstr("the cut at lon = 0 lies outside of the"));
+      EXPECT_THAT(run_tegl(arguments("q=-340")).err, HasSubstr("the cut at q = -340 lies outside of the"));
+    }
+  }
+}
+
 TEST_F(Slice, OutsideOfTheTimesIsRefusedWithTheirRange) {
   for (const char* at : {"t=-0.1", "t=8.01", "t=1e9"}) {
     const RunResult run = run_tegl({"slice", file(), "--iso", "0", "--at", at, "-o", path("out.ply")});

@@ -88,6 +88,10 @@ TEST_F(StructuredGrids, WhatACurvedGridCannotHaveIsRefused) {
   expect_refused(file, {"--periodic", "i"}, "or --curved-grid, which reads a structured grid as an image");
   expect_refused(write("other.nrrd", "NRRD0004\n"), {"--curved-grid"},
                  "expected it with a .vts file, or a .pvd file of them");
+  expect_refused(file, {"--index-grid"},
+                 "expected it with an image, or with --curved-grid, which reads a structured grid as an image");
+  expect_refused(write("plain.nrrd", "NRRD0004\ntype: uint8\ndimension: 2\nsizes: 2 2\nencoding: ascii\n\n1 2 1 2\n"),
+                 {"--index-grid"}, "expected it with a curved grid: a netCDF file, or a .vts file with --curved-grid");
   expect_refused(write("hidden.vts", rings_vts(3, array_of_cells("vtkGhostType", 32))), {"--curved-grid"},
                  "a curved grid with hidden cells or points");
   expect_refused(write("cells.vts", rings_vts(3, array_of_cells("material", 1))),
@@ -96,6 +100,78 @@ TEST_F(StructuredGrids, WhatACurvedGridCannotHaveIsRefused) {
   std::string bent = rings_vts(1);
   bent.replace(bent.find(" 0\n"), 3, " 1\n");  // z of the first point
   expect_refused(write("bent.vts", bent), {"--curved-grid"}, "on a curved surface; expected one in a plane");
+}
+
+TEST_F(StructuredGrids, GhostTypesThatHideNothingAreAllowed) {
+  const std::string file = write("rings.vts", rings_vts(3)), output = path("out.vtkhdf");
+  const auto expected = run_json({"contour", file, "--curved-grid", "-o", output});
+  for (const int other : {0, 2}) {  // of cells, 2 is no mark of hidden ones
+    const std::string marked = write("marked.vts", rings_vts(3, array_of_cells("vtkGhostType", other)));
+    EXPECT_EQ(run_json({"contour", marked, "--curved-grid", "-o", output})["vertices"], expected["vertices"]);
+  }
+  std::string points = rings_vts(3);
+  const auto with_points = [&](int first) {
+    std::string array = R"(<PointData><DataArray type="UInt8" Name="vtkGhostType" format="ascii">)";
+    for (int p = 0; p < kAround * kOut * 3; ++p) array += (p == 0 ? std::to_string(first) : "0") + ' ';
+    std::string text = points;
+    return text.replace(text.find("<PointData>"), 11, array + "</DataArray>");
+  };
+  EXPECT_EQ(run_json({"contour", write("points.vts", with_points(0)), "--curved-grid", "--var", "radius", "-o",
+                      output})["vertices"],
+            expected["vertices"]);
+  expect_refused(write("points.vts", with_points(2)), {"--curved-grid", "--var", "radius"},
+                 "a curved grid with hidden cells or points (1 points by the array 'vtkGhostType')");
+  expect_refused(write("points.vts", with_points(1)), {"--curved-grid", "--var", "radius"}, "(1 points by");
+}
+
+/// The rings of one layer in two pieces, from i = 0 to `first_end` and from `second_begin` to the last one. The cells
+/// and points of the first piece after i = 10 are marked as duplicates, and the cell before i = 10 by `before`.
+std::string pieces_vts(int first_end, int second_begin, int before = 0) {
+  std::ostringstream text;
+  text.precision(17);
+  text << R"(<VTKFile type="StructuredGrid" version="0.1"><StructuredGrid WholeExtent="0 23 0 5 0 0">)";
+  const auto write_piece = [&](int begin, int end) {
+    std::ostringstream points, values, of_points, of_cells;
+    points.precision(17);
+    for (int j = 0; j < kOut; ++j)
+      for (int i = begin; i <= end; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kAround, radius = 1 + 0.2 * j;
+        points << radius * std::cos(angle) << ' ' << radius * std::sin(angle) << " 0\n";
+        values << radius << ' ';
+        of_points << (begin == 0 && i > 10 ? 1 : 0) << ' ';
+        if (j + 1 < kOut && i < end) of_cells << (begin == 0 && i >= 10 ? 1 : begin == 0 && i == 9 ? before : 0) << ' ';
+      }
+    const auto ghosts = [](const std::ostringstream& numbers) {
+      return R"(<DataArray type="UInt8" Name="vtkGhostType" format="ascii">)" + numbers.str() + "</DataArray>";
+    };
+    text << "<Piece Extent=\"" << begin << ' ' << end << R"( 0 5 0 0"><PointData>)" << ghosts(of_points)
+         << R"(<DataArray type="Float32" Name="radius" format="ascii">)" << values.str() << "</DataArray></PointData>"
+         << "<CellData>" << ghosts(of_cells) << "</CellData><Points>"
+         << R"(<DataArray type="Float64" Name="p" NumberOfComponents="3" format="ascii">)" << points.str()
+         << "</DataArray></Points></Piece>";
+  };
+  write_piece(0, first_end);
+  write_piece(second_begin, kAround - 1);
+  text << "</StructuredGrid></VTKFile>";
+  return text.str();
+}
+
+TEST_F(StructuredGrids, DuplicatesOfPiecesAreNotHidden) {
+  const std::string whole = write("rings.vts", rings_vts(1)), output = path("out.vtkhdf");
+  const auto expected = run_json({"contour", whole, "-o", output});
+  for (const int first_end : {10, 11, 13}) {
+    SCOPED_TRACE(first_end);
+    const std::string pieces = write("pieces.vts", pieces_vts(first_end, 10));
+    for (const bool is_curved : {false, true}) {
+      std::vector<std::string> arguments = {"contour", pieces, "--var", "radius", "-o", output};
+      if (is_curved) arguments.emplace_back("--curved-grid");
+      for (const char* const count : {"vertices", "simplices"})
+        EXPECT_EQ(run_json(arguments)[count], expected[count]) << count << ' ' << is_curved;
+    }
+  }
+  expect_refused(write("pieces.vts", pieces_vts(11, 10, 32)), {"--curved-grid", "--var", "radius"}, "(5 cells by");
+  // the first piece's duplicates are in no other piece
+  expect_refused(write("pieces.vts", pieces_vts(13, 12)), {"--curved-grid", "--var", "radius"}, "(10 cells by");
 }
 
 }  // namespace

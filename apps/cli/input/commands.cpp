@@ -95,7 +95,8 @@ OpenLayersResult Command::open() {
 void Command::settle_curved(ImageInfo& info, CurvedGrids curved) const {
   if (images_.index_grid() && info.format != "netCDF" && info.curved.empty())
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--index-grid with {}, which is {}; expected it with a curved grid of a netCDF file",
+                fmt::format("--index-grid with {}, which is {}; expected it with a curved grid: a netCDF file, or a "
+                            ".vts file with --curved-grid",
                             worked_on_.front(), info.format));
   if (images_.index_grid()) info.curved.clear();
   if (info.curved.empty() || curved == CurvedGrids::allowed) return;

@@ -56,6 +56,7 @@ CutAxis cut_axis_of(const CurvedAxis& one) {
     axis.first = std::fmin(axis.first, one[i]);
     axis.last = std::fmax(axis.last, one[i]);
   }
+  axis.is_longitude = is_longitude_unit(one.unit);
   return axis;
 }
 
@@ -106,6 +107,7 @@ CutSpace space_of_cells(const AnyImage& image, const CellFaces& faces) {
       const bool is_given = a < faces.size() && !faces[a].empty();
       grid.axes[a] = Axis::rectilinear(is_given ? faces[a] : cell_faces(owned.grid.axes[a]));
       grid.axes[a].name = owned.grid.axes[a].name;
+      grid.axes[a].unit = owned.grid.axes[a].unit;
     }
     return space_of(grid);
   };

@@ -205,8 +205,10 @@ template CutAxis axis_with_periods(CutAxis, int, const std::vector<Period<4>>&);
 template CutAxis axis_with_periods(CutAxis, int, const std::vector<Period<5>>&);
 
 double within_period(const CutAxis& axis, double place) {
-  if (!(axis.period > 0.0) || axis.is_moved || (place >= axis.first && place <= axis.last)) return place;
-  return place_in_period(place, axis.first, axis.period);
+  if (place >= axis.first && place <= axis.last) return place;
+  if (axis.period > 0.0) return axis.is_moved ? place : place_in_period(place, axis.first, axis.period);
+  const double turned = axis.is_longitude ? place_in_period(place, axis.first, 360.0) : place;
+  return turned <= axis.last ? turned : place;
 }
 
 std::vector<SpelledNumber> parse_spelled_numbers(const std::string& option, std::string_view text) {
@@ -270,6 +272,7 @@ CutSpace space_of(const Grid<N>& grid) {
       world.first += low;
       world.last += high;
     }
+    world.is_longitude = is_longitude_unit(grid.axes[a].unit);
   }
   return space;
 }
@@ -299,6 +302,7 @@ CutSpace space_of(const Mesh& mesh) {
       axis.first = std::min(axis.first, mesh.coordinates[i]);
       axis.last = std::max(axis.last, mesh.coordinates[i]);
     }
+    axis.is_longitude = a < mesh.axis_units.size() && is_longitude_unit(mesh.axis_units[a]);
   }
   if (n == 3) wrap_axes<3>(mesh.periods, space);
   if (n == 4) wrap_axes<4>(mesh.periods, space);
@@ -375,6 +379,8 @@ std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allo
                   fmt::format("--at {}={} names no axis; expected one of {}", cut.axis, cut.text, axis_names(space)));
     cut.across = static_cast<int>(a);
     cut.axis = space.axes[a].name;
+    if (space.axes[a].is_longitude && !(space.axes[a].period > 0.0))
+      cut.value = within_period(space.axes[a], cut.value);
     cut.normal.assign(space.axes.size(), 0.0);
     cut.normal[a] = 1.0;
   }

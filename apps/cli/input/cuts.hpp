@@ -54,6 +54,7 @@ struct CutAxis {
   double last = 0;
   double period = 0;      ///< if above 0: every place has a cut, and first to last is one period
   bool is_moved = false;  ///< whether cuts a period apart are not equal, but moved within their hyperplanes
+  bool is_longitude = false;  ///< by its unit: places 360 apart are equal
   /// Of a periodic axis: the range of the unrolled contour, for planes that do not cut the wrapped one.
   std::array<double, 2> unrolled = {};
 };
@@ -85,7 +86,8 @@ std::optional<CutPeriod<N>> take_period(CutAxis& axis, std::span<const Period<N>
 template <int N>
 CutAxis axis_with_periods(CutAxis axis, int a, const std::vector<Period<N>>& periods);
 
-/// A place on an axis; if it is outside of the axis's range, moved there by periods, unless this moves the cut.
+/// A place on an axis; if it is outside of the axis's range, moved there by periods, unless this moves the cut, or by
+/// turns of 360 on an axis of longitudes. Unchanged if no turn leads into the range.
 double within_period(const CutAxis& axis, double place);
 
 /// The space that is cut.

@@ -60,17 +60,19 @@ void refuse_options_of_images(const std::string& file, const ExtractionOptions& 
     if (option != "--var" && option != "--times" && option != "--time-step" && option != "--sort" &&
         option != "--cells-to-points")
       refused.push_back(option);
+  const bool is_structured = file.ends_with(".vts");
   if (!refused.empty())
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("{} with {}, which is a mesh; expected it with an image", refused.front(), file));
+                fmt::format("{} with {}, which is a mesh; expected it with an image{}", refused.front(), file,
+                            is_structured ? ", or with --curved-grid, which reads a structured grid as an image" : ""));
   const auto fail = [&](const std::string& option, const char* expected) {
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("{} with {}, which is a mesh; expected {}", option, file, expected));
   };
   if (const std::string tiling = extraction.given_tiling(); !tiling.empty())
-    fail(tiling, file.ends_with(".vts") ? "an image, or the mesh without this option, or --curved-grid, which reads a "
-                                          "structured grid as an image"
-                                        : "an image, or the mesh without this option");
+    fail(tiling, is_structured ? "an image, or the mesh without this option, or --curved-grid, which reads a "
+                                 "structured grid as an image"
+                               : "an image, or the mesh without this option");
   const ExtractOptions options = extraction.library_options(true);
   if (options.normals != Normals::none && options.normals != Normals::differences)
     fail("--normals " + extraction.normals(), "--normals gradient, geometric or flat");

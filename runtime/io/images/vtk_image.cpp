@@ -146,15 +146,17 @@ RawGrid rectilinear_grid(OpenVtkImage& image, const std::array<std::size_t, 3>& 
   return grid;
 }
 
-/// Throws UnsupportedData if a piece has an array that hides cells or points.
+/// Throws UnsupportedData if cells or points are hidden.
 void require_no_hidden(const VtkFile& file) {
-  for (const XmlElement* const piece : file.pieces())
-    for (const char* const parent : {"CellData", "PointData"})
-      for (const VtkArray& array : file.arrays(piece->child(parent)))
-        if (array.name == "vtkGhostType")
-          fail(ErrorCode::UnsupportedData, file.path(),
-               "a curved grid with hidden cells or points (the array 'vtkGhostType'); expected none, or the file as a "
-               "mesh, which leaves them out");
+  for (const bool of_cells : {true, false}) {
+    const std::vector<bool> is_hidden = hidden_in_structured(file, of_cells);
+    if (const auto count = std::ranges::count(is_hidden, true); count > 0)
+      fail(ErrorCode::UnsupportedData, file.path(),
+           "a curved grid with hidden cells or points ({} {} by the array 'vtkGhostType'); expected none, or the file "
+           "as "
+           "a mesh, which leaves hidden cells out",
+           count, of_cells ? "cells" : "points");
+  }
 }
 
 /// The coordinates x, y and z of the points of a StructuredGrid.
@@ -185,12 +187,12 @@ RawGrid curved_grid(OpenVtkImage& image, const std::array<std::size_t, 3>& order
     fail(ErrorCode::UnsupportedData, file.path(),
          "'{}' has values of cells on a curved grid; expected values of points, or the file read as a mesh",
          image.variable.name);
-  require_no_hidden(file);
   const auto dims = std::ranges::count_if(image.sizes, [](auto size) { return size > 1; });
   if (dims < 2)
     fail(ErrorCode::UnsupportedData, file.path(), "a structured grid of {} points; expected at least 2 along two axes",
          fmt::join(image.sizes, " x "));
   auto columns = coordinates_of_points(file, progress);
+  require_no_hidden(file);
   std::size_t dropped = 3;
   for (std::size_t c = 0; c < 3 && dims == 2; ++c)
     if (std::ranges::all_of(columns[c], [&](double x) { return x == columns[c].front(); })) dropped = c;

@@ -308,34 +308,28 @@ void add_structured_cells(const VtkFile& file, StoredCells& all) {
       }
 }
 
-/// The array of ghost types in a piece, if it has one.
-std::optional<VtkArray> ghosts_of(const VtkFile& file, const XmlElement& piece) {
-  for (VtkArray& array : file.arrays(piece.child("CellData"))) {
-    if (array.name != "vtkGhostType") continue;
-    if (array.components == 1 && array.type != "float" && array.type != "double") return std::move(array);
-    fail(ErrorCode::MalformedFile, file.path(), "array 'vtkGhostType' has {} components of type {}; expected UInt8",
-         array.components, array.type);
-  }
-  return std::nullopt;
-}
-
 /// Marks the cells that are hidden or belong to another piece.
 void find_hidden(const VtkFile& file, StoredCells& all) {
+  if (file.type() == "StructuredGrid") {
+    all.is_hidden = hidden_in_structured(file, true);
+    return;
+  }
   const auto pieces = file.pieces();
-  if (std::none_of(pieces.begin(), pieces.end(), [&](const auto* piece) { return ghosts_of(file, *piece); })) return;
+  if (std::none_of(pieces.begin(), pieces.end(), [&](const auto* piece) { return ghosts_of(file, *piece, true); }))
+    return;
   const auto append = [&](const ValueArray& ghosts) {
-    constexpr std::uint64_t kHidden = 1 | 32;  // vtkDataSetAttributes: DUPLICATECELL, HIDDENCELL
     std::visit(
         [&]<class T>(const ValueVector<T>& values) {
-          if constexpr (std::is_integral_v<T>)
-            for (const T value : values) all.is_hidden.push_back((static_cast<std::uint64_t>(value) & kHidden) != 0);
+          for (const T value : values) {
+            const GhostMarks marks(static_cast<std::uint64_t>(value), true);
+            all.is_hidden.push_back(marks.is_hidden || marks.is_duplicate);
+          }
         },
         ghosts);
   };
-  if (file.type() == "StructuredGrid") return append(read_structured(file, "CellData", "vtkGhostType", 1, true, {}));
   for (const XmlElement* const piece : pieces) {
     const std::uint64_t count = file.whole_number(*piece, "NumberOfCells");
-    if (const auto ghosts = ghosts_of(file, *piece); ghosts && count > 0)
+    if (const auto ghosts = ghosts_of(file, *piece, true); ghosts && count > 0)
       append(file.read(*ghosts, count));
     else
       all.is_hidden.insert(all.is_hidden.end(), static_cast<std::size_t>(count), false);
