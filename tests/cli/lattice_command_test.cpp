@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "sample_files.hpp"
 #include "tegl/io.hpp"
 #include "tegl_program.hpp"
 
@@ -168,6 +169,21 @@ TEST_F(LatticeCommand, LatticesAreClosedPeriodicAndSampledAlongTheirEdges) {
   sample("bcc", "6,6,7", "x", path("odd.nrrd"));
   refused({"contour", path("odd.nrrd"), "--iso", "0.2", "-o", ply, "--periodic", "z"},
           "has 7 layers; expected an even");
+}
+
+/// Two layers of d4 are no cells.
+TEST_F(LatticeCommand, TooFewLayersAreErrors) {
+  const std::string flat =
+      write("flat.nrrd", nrrd_bytes(sample({4, 4, 4, 2}, [](const auto& x) { return static_cast<double>(x[3]); })));
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"contour", flat, "-o", path("d4.vtkhdf")},
+                                                  {"measure", flat},
+                                                  {"contour", flat, "--facets", "-o", path("facets.vtu")}}) {
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--iso", "0.5", "--lattice", "d4"});
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 5) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("has 2 layers; expected at least 3 layers on the lattice d4"));
+  }
 }
 
 }  // namespace

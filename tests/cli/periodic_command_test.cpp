@@ -449,18 +449,6 @@ TEST_F(PeriodicCommand, ALatticeHasItsOwnCells) {
   EXPECT_EQ(facets["boundary_facets"], 0);
   expect_refused({"--lattice", "bcc", "--facets", "--periodic", "y=19", "-o", path("facets.vtu")},
                  "the period of axis 1 (y) is 19; expected 20");
-  // two layers of d4, which are no cells
-  const std::string flat =
-      write("flat.nrrd", nrrd_bytes(sample({4, 4, 4, 2}, [](const auto& x) { return static_cast<double>(x[3]); })));
-  for (const std::vector<std::string>& command : {std::vector<std::string>{"contour", flat, "-o", path("d4.vtkhdf")},
-                                                  {"measure", flat},
-                                                  {"contour", flat, "--facets", "-o", path("facets.vtu")}}) {
-    std::vector<std::string> arguments = command;
-    arguments.insert(arguments.end(), {"--iso", "0.5", "--lattice", "d4"});
-    const RunResult run = run_tegl(arguments);
-    EXPECT_EQ(run.exit, 5) << run.err;
-    EXPECT_THAT(run.err, HasSubstr("has 2 layers; expected at least 3 layers on the lattice d4"));
-  }
   expect_refused({"--lattice", "bcc", "--normals=sobel", "-o", output},
                  "sobel normals on a lattice; expected gradient");
   (void)run_json({"contour", ball, "--iso", "0", "--lattice", "fcc", "--normals", "-o", output});

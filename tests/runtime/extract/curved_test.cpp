@@ -583,68 +583,6 @@ TEST(Curved, GridsThatMoveInTime) {
   }
 }
 
-/// The coordinate of an array between the samples around a point, multilinear; `index`: of the point, by axis.
-double between_samples(const CurvedAxis& of, const std::array<std::size_t, 3>& sizes,
-                       const std::array<double, 3>& index) {
-  double sum = 0.0;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    double weight = 1.0;
-    std::size_t at = 0, stride = 1;
-    for (unsigned a = 0; a < 3; ++a) {
-      const auto up = static_cast<std::size_t>(corner >> a & 1u);
-      const double base = std::min(std::floor(index[a]), static_cast<double>(sizes[a] - 2)), share = index[a] - base;
-      weight *= up != 0 ? share : 1.0 - share;
-      if ((of.along >> a & 1u) == 0) continue;
-      at += (static_cast<std::size_t>(base) + up) * stride;
-      stride *= sizes[a];
-    }
-    sum += weight * of.values[at];
-  }
-  return sum;
-}
-
-TEST(Curved, PointsAreInterpolatedBetweenTheSamplesAroundThem) {
-  // At samples, on edges and inside cells, in blocks of all sizes; arrays with the same and with other axes.
-  const std::array<std::size_t, 3> sizes = {7, 6, 5};
-  Grid<3> grid = Grid<3>::unit(sizes);
-  grid.axes[2] = Axis::rectilinear({0.0, 1.0, 3.0, 7.0, 8.0});
-  std::mt19937 random(11);
-  const auto uniform = [&] { return std::uniform_real_distribution<>(0.0, 1.0)(random); };
-  for (const std::array<unsigned, 3>& along : {std::array{7u, 7u, 7u}, {7u, 3u, 7u}, {3u, 3u, 0u}, {7u, 7u, 0u}}) {
-    std::vector<CurvedAxis> curved;
-    for (int a = 0; a < 3; ++a) {
-      if (along[a] == 0) continue;
-      CurvedAxis& one = curved.emplace_back(CurvedAxis{a, along[a], {}});
-      for (std::size_t k = 0; k < ((along[a] & 4u) != 0 ? sizes[2] : 1); ++k)
-        for (std::size_t j = 0; j < sizes[1]; ++j)
-          for (std::size_t i = 0; i < sizes[0]; ++i)
-            one.values.push_back(static_cast<double>(std::array{i, j, k}[a]) + 0.3 * uniform());
-    }
-    for (const std::size_t count : {0, 1, 2, 63, 64, 65, 130}) {
-      Contour<3, double> contour;
-      std::vector<std::array<double, 3>> expected;
-      for (std::size_t v = 0; v < count; ++v) {
-        std::array<double, 3> index;
-        for (int a = 0; a < 3; ++a) {
-          index[a] = std::floor(uniform() * static_cast<double>(sizes[a]));
-          const bool moves = v % 5 == 4 ? uniform() < 0.5 : a == static_cast<int>(v % 5);
-          if (moves && index[a] + 1.0 < static_cast<double>(sizes[a])) index[a] += uniform();
-        }
-        const auto layer = static_cast<std::size_t>(std::min(index[2], 3.0));
-        const double first = grid.axes[2][layer];
-        const double depth = first + (index[2] - static_cast<double>(layer)) * (grid.axes[2][layer + 1] - first);
-        expected.push_back({0.0, 0.0, depth});
-        for (const CurvedAxis& one : curved) expected.back()[one.axis] = between_samples(one, sizes, index);
-        contour.vertices.push_back({index[0], index[1], along[2] == 0 ? depth : index[2]});
-      }
-      const Contour<3, double> moved = on_curved_grid<double>(std::move(contour), grid, curved);
-      ASSERT_EQ(moved.vertices.size(), count);
-      for (std::size_t v = 0; v < count; ++v)
-        for (int a = 0; a < 3; ++a) EXPECT_NEAR(moved.vertices[v][a], expected[v][a], 1e-12) << v << " of " << count;
-    }
-  }
-}
-
 TEST(Curved, FoldsAreFound) {
   auto image = curved_image<2>({6, 6}, &bent<2>, &ball<2>);
   EXPECT_EQ(find_folds<2>(image.image.grid, image.curved), GridFolds<2>{});
