@@ -54,16 +54,14 @@ def model_chgcar(size=24, edge=3.9):
 
 
 # %% Read the file, or a model
-path = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else None
-if path is None:
-    text = model_chgcar()
-else:
-    text = (gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()).decode()
+name = sys.argv[1] if len(sys.argv) > 1 else ""
+stored = pathlib.Path(name).read_bytes() if name else model_chgcar().encode()
+text = (gzip.decompress(stored) if name.endswith(".gz") else stored).decode()
 if "BANDGRID_3D_BANDS" in text:
     fermi, bands, vectors = read_bxsf(text)
     fields = [(values, fermi) for values in bands if values.min() < fermi < values.max()]
     if not fields:
-        sys.exit(f"{path.name}: none of the {len(bands)} bands has the Fermi energy {fermi:g} between its energies, as in an "
+        sys.exit(f"{name}: none of the {len(bands)} bands has the Fermi energy {fermi:g} between its energies, as in an "
                  f"insulator; expected a metal")
 else:
     values, vectors = read_chgcar(text)
@@ -77,7 +75,7 @@ def surface_of(values, level):
 
 
 volume = abs(np.linalg.det(vectors))
-print(f"{path.name if path else 'model'}: {' x '.join(map(str, fields[0][0].shape))} samples, a cell of the volume {volume:.5g}")
+print(f"{pathlib.Path(name).name or 'model'}: {' x '.join(map(str, fields[0][0].shape))} samples, a cell of the volume {volume:.5g}")
 for values, level in fields:
     surface = surface_of(values, level)
     report, measures = surface.check(), surface.measure()
