@@ -353,8 +353,9 @@ TEST(Periodic, StepsOfHalfAPeriodAndMoreAreRefused) {
     expect_error(ErrorCode::InvalidArgument, part, [&] { (void)count_periodic(image.view(), periods, 0.0); });
   };
   const auto along = [](std::vector<double> places) { return Axis::rectilinear(std::move(places)); };
-  refuses("the period of axis 0 (x) is 1, and the step from 0.3 to 0.8 is 0.5; expected steps of less than half the",
-          along({0.0, 0.1, 0.2, 0.3, 0.8}), 1.0);
+  refuses(
+      "the period of axis 0 (x) is 1.5, and the step from 0.5 to 1.25 is 0.75; expected steps of less than half the",
+      along({0.0, 0.125, 0.25, 0.5, 1.25}), 1.5);
   refuses("the step from 9 to 1 is 8; expected", along({10.0, 9.0, 1.0}), 12.0);
   // the last step, across the seam: often a period in another unit
   const Axis radians = Axis::uniform(36, 0.0, kTurn / 36);
