@@ -3,7 +3,6 @@
 
 import base64
 import dataclasses
-import gzip
 import importlib.util
 import json
 import os
@@ -637,7 +636,7 @@ def test_a_density_in_a_crystal_is_closed_on_the_cubic_grid_and_on_fcc(monkeypat
 
 def test_fermi_surfaces_of_a_crystal_are_closed(monkeypatch):
     of = crystal(monkeypatch, "RhBulkFcc.bxsf.gz")
-    text = gzip.open(of["path"], "rt").read().split("BAND:  6")[1].split()
+    text = of["text"].split("BAND:  6")[1].split()
     assert np.array(text[:32**3], dtype=float).reshape([32] * 3)[:-1, :-1, :-1].tolist() == of["bands"][0].tolist()
     reports = [of["surface_of"](*field).check() for field in of["fields"]]
     assert all(report.is_closed and report.is_manifold for report in reports)
