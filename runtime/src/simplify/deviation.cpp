@@ -149,14 +149,7 @@ class SimplexDeviation {
     const double walked = bound_by_walk(s, enough);
     if (walked < kInfinity) return walked;
     const double result = in_parts(enough, kMostParts, least);
-    const bool is_flat = FlatSimplices<N>::is_flat(m_.from.corners[s]);
-    for (const Part& part : parts_)
-      for (const auto& [t, distance] : part.matches) {
-        if (is_flat)
-          of_flat_.push_back({distance, s, t});
-        else
-          m_.raise_bound(t, distance);
-      }
+    if (!m_.of_to.empty()) raise_matches(s);
     return result;
   }
 
@@ -217,6 +210,19 @@ class SimplexDeviation {
       result = walk_.bound(frame_, whole_, edge_, starts, 0.0, 2.0 * rim);
     if (result < kInfinity) walk_.visit_matches([&](Index t, double distance) { m_.raise_bound(t, distance + rim); });
     return result;
+  }
+
+  /// Raises the bounds of the simplices that the parts are matched with; of flat simplices later, when their neighbours
+  /// have bounds.
+  void raise_matches(Index s) {
+    const bool is_flat = FlatSimplices<N>::is_flat(m_.from.corners[s]);
+    for (const Part& part : parts_)
+      for (const auto& [t, distance] : part.matches) {
+        if (is_flat)
+          of_flat_.push_back({distance, s, t});
+        else
+          m_.raise_bound(t, distance);
+      }
   }
 
   void load_size(Index s) {
@@ -529,9 +535,8 @@ void refine_largest(const DeviationInput<N>& measure, Deviation& result, unsigne
       });
   flat.lower(result.of_from);
   // matches of flat simplices, whose bounds may be lower now
-  if (!result.of_to.empty())
-    for (const auto& [distance, s, t] : measure.totals.of_flat)
-      result.of_to[t] = std::max(result.of_to[t], std::min(distance, result.of_from[s]));
+  for (const auto& [distance, s, t] : measure.totals.of_flat)
+    result.of_to[t] = std::max(result.of_to[t], std::min(distance, result.of_from[s]));
   result.bound = *std::max_element(result.of_from.begin(), result.of_from.end());
   for (double& bound : result.of_to) bound = std::min(bound, result.bound);
 }
