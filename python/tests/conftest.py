@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+import tegl
 
 
 def ball(ndim, size=11, radius=0.7):
@@ -77,3 +78,9 @@ def moving_balls():
     t, z, y, x = np.ogrid[0:8, -1:1:17j, -1:1:17j, -2:2:33j]
     apart = 1.2 - 0.14 * t
     return 0.6 - np.minimum(np.sqrt(z**2 + y**2 + (x - apart)**2), np.sqrt(z**2 + y**2 + (x + apart)**2))
+
+
+@pytest.fixture
+def balls(moving_balls):
+    """The 4D contour of the moving balls, with names and units."""
+    return tegl.contour(moving_balls, 0.0, axis_names="tzyx", axis_units=["h", "mm", "mm", "mm"], dtype=np.float64)
