@@ -297,23 +297,20 @@ class LayerWindow {
   std::vector<std::vector<T>> kept_;
 };
 
-}  // namespace
-}  // namespace detail
-
-template <Coordinate Real, Value T, int N>
-requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_streamed_several(
-    LayerReader<T, N>& layers, Lattice lattice,
-    std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours, const ExtractOptions& options,
-    const AxisPeriods<N>& periods) {
+/// The contours of a reader's image, to their sinks.
+template <class Real, Value T, int N>
+std::vector<ExtractedSize> stream_layers(LayerReader<T, N>& layers, Lattice lattice,
+                                         std::span<const StreamedContour<N, Real>> contours,
+                                         const ExtractOptions& options, const AxisPeriods<N>& periods) {
   for (const auto& contour : contours)
-    if (contour.sink == nullptr) detail::refuse("a contour without a sink; expected one each");
+    if (contour.sink == nullptr) refuse("a contour without a sink; expected one each");
   const Grid<N> grid = layers.grid();
-  detail::check_stream<Real>(grid, lattice, options, periods);
-  bool by_rows = detail::has_rows(lattice, options.ambiguity) && !options.close && periods == AxisPeriods<N>{};
-  std::deque<detail::LatticeStream<Real, N>> streams;  // not movable
+  check_stream<Real>(grid, lattice, options, periods);
+  bool by_rows = has_rows(lattice, options.ambiguity) && !options.close && periods == AxisPeriods<N>{};
+  std::deque<LatticeStream<Real, N>> streams;  // not movable
   for (const auto& contour : contours) streams.emplace_back(contour, grid, lattice, periods, options, by_rows);
   if (contours.empty()) return {};
-  detail::LayerWindow<T, N> window(layers, periods[N - 1]);
+  LayerWindow<T, N> window(layers, periods[N - 1]);
   const auto count = static_cast<std::ptrdiff_t>(window.count());
   double read_seconds = 0.0;
   for (std::ptrdiff_t first = 0; first < count;) {
@@ -321,8 +318,8 @@ requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_st
       return window.part(
           first, by_rows ? window.layers_with(std::size_t{1} << 18, 16) : window.layers_with(std::size_t{1} << 16, 2));
     };
-    detail::PartLayers part = next_part();
-    detail::Stopwatch watch;
+    PartLayers part = next_part();
+    Stopwatch watch;
     Image<T, N> image = window.layers(part);
     if (by_rows && window.any_missing()) {
       by_rows = false;
@@ -336,7 +333,7 @@ requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_st
                static_cast<double>(count);
       };
       ExtractOptions one = options;
-      one.work.progress = detail::part_of(options.work.progress, share(i), share(i + 1));
+      one.work.progress = part_of(options.work.progress, share(i), share(i + 1));
       streams[i].add(image, part, one, by_rows);
     }
     first = part.last;
@@ -344,6 +341,17 @@ requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_st
   std::vector<ExtractedSize> results;
   for (auto& stream : streams) results.push_back(stream.finish(read_seconds));
   return results;
+}
+
+}  // namespace
+}  // namespace detail
+
+template <Coordinate Real, Value T, int N>
+requires DimensionBetween<N, 2, 4> std::vector<ExtractedSize> extract_lattice_streamed_several(
+    LayerReader<T, N>& layers, Lattice lattice,
+    std::type_identity_t<std::span<const StreamedContour<N, Real>>> contours, const ExtractOptions& options,
+    const AxisPeriods<N>& periods) {
+  return detail::stream_layers<Real>(layers, lattice, contours, options, periods);
 }
 
 #define TEGL_INSTANTIATE_ONE(T, N, Real)                                                             \
