@@ -129,8 +129,7 @@ std::vector<Complex<4>> noisy_complexes(std::size_t samples, std::uint64_t seed)
   return complexes;
 }
 
-// Minutes; run by the test long_complex.
-TEST(Compact4d, DISABLED_MovingMeshesOfAHundredThousandCells) {
+TEST(Compact4d, MovingMeshesOfAHundredThousandCells) {
   for (Complex<4>& complex : noisy_complexes(35, 7)) {
     EXPECT_GT(complex.cell_count(), 100000u);
     for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric}) {

@@ -166,8 +166,7 @@ TEST(Delaunay, PointsOnCommonSpheresAreTriangulated) {
   expect_closed_noise<4>(on_spheres<4>(4), "spheres");
 }
 
-// Minutes; run by the test long_complex.
-TEST(Delaunay, DISABLED_AHundredThousandCells) {
+TEST(Delaunay, AHundredThousandCells) {
   constexpr std::size_t kCells = 100000;
   expect_closed_noise<2>(random_points<2>(51000, 1), "random", kCells);
   expect_closed_noise<3>(random_points<3>(16000, 2), "random", kCells);

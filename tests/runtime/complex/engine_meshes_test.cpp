@@ -348,8 +348,7 @@ TEST(EngineCells, DelaunayMeshesHaveTheSimplicesOfTheGeneralEngine) {
 // Minutes; run by the test long_complex.
 TEST(EngineCells, DISABLED_CubesInMeshesOfAHundredThousandCells) { expect_cubes_joined_as_by_the_engine(48, 33); }
 
-// Minutes; run by the test long_complex.
-TEST(EngineCells, DISABLED_MeshesOfAHundredThousandCells) {
+TEST(EngineCells, MeshesOfAHundredThousandCells) {
   expect_split_cubes_of_the_engine(48, 33);
   if (!has_delaunay()) return;
   expect_delaunay_of_the_engine<2>(51000, 226);
