@@ -14,6 +14,8 @@
 #include <map>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "hostile/mutations.hpp"
 #include "hostile/watched_runs.hpp"
 #include "images/netcdf_files.hpp"
@@ -56,7 +58,7 @@ std::vector<Seed> seeds_with(const std::vector<std::string>& extensions, std::ve
 
 /// Copies the files to which seeds refer.
 void write_companions(const fs::path& folder) {
-  for (const char* const name : {"assimp.bin", "vtk_ascii.vti", "vtk_ascii.vtu"})
+  for (const char* const name : {"assimp.bin", "vtk_ascii.vti", "vtk_ascii.vtu", "vtk_base64.vts"})
     fs::copy_file(fs::path(TEGL_SOURCE_DIR "/tests/io/seeds") / name, folder / name,
                   fs::copy_options::overwrite_existing);
   write_file(folder / "values.raw", bytes_of(counting<std::int16_t>(120)));
@@ -321,6 +323,40 @@ std::string collection_of(const std::string& file) {
 
 TEST(Fuzz, VtkImages) {
   fuzz({".vti", ".vtr"}, {{"own.pvd", collection_of("vtk_ascii.vti")}}, read_as_image, kImageCommands);
+}
+
+/// A structured grid of VTK in text, by pieces of one row of cells each.
+std::string curved_grid_of(int pieces) {
+  std::string file = fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\">\n<StructuredGrid WholeExtent=\"0 3 0 {} 0 1\">\n",
+      pieces);
+  for (int piece = 0; piece < pieces; ++piece) {
+    std::string values, points;
+    for (int k = 0; k < 2; ++k)
+      for (int j = piece; j < piece + 2; ++j)
+        for (int i = 0; i < 4; ++i) {
+          values += fmt::format("{} ", 10 * i + 7 * j + 30 * k);
+          points += fmt::format("{} {} {} ", i + 0.2 * j, j - 0.1 * i, k + 0.05 * i * j);
+        }
+    file += fmt::format(
+        "<Piece Extent=\"0 3 {} {} 0 1\">\n<PointData><DataArray type=\"Float64\" Name=\"f\" "
+        "format=\"ascii\">{}</DataArray>"
+        "</PointData>\n<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" "
+        "format=\"ascii\">{}</DataArray></Points>\n"
+        "</Piece>\n",
+        piece, piece + 1, values, points);
+  }
+  return file + "</StructuredGrid>\n</VTKFile>\n";
+}
+
+TEST(Fuzz, VtkCurvedGrids) {
+  fuzz(
+      {".vts"},
+      {{"own.vts", curved_grid_of(1)}, {"pieces.vts", curved_grid_of(3)}, {"own.pvd", collection_of("vtk_base64.vts")}},
+      read_as_image,
+      {{"info", "FILE"},
+       {"contour", "FILE", "--curved-grid", "--iso", "25", "-o", "OUT"},
+       {"contour", "FILE", "--curved-grid", "--periodic", "x", "--iso", "25", "-o", "OUT"}});
 }
 
 TEST(Fuzz, CellMeshes) {
