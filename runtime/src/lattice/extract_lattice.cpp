@@ -139,8 +139,8 @@ class LatticeWriter {
       edges.end = contour_.vertices.data() + rows_.row(r).first_own;
       write_row(edges, sample(row, {}), sample(row, kinds[kind].to));
       if (!is_layered_ || kinds[kind].to[N - 1] == 0) continue;
-      const double time = last_coordinate(row, {}), next = last_coordinate(row, kinds[kind].to);
-      for (Vertex& vertex : std::span(edges.out, more)) keep_between(time, next, vertex);
+      const auto [low, high] = times_after(row);
+      for (Vertex& vertex : std::span(edges.out, more)) vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
     }
   }
 
@@ -154,14 +154,9 @@ class LatticeWriter {
     const std::vector<LatticeCell>& kinds = rows_.pattern(at).cells;
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       if ((row.kinds >> kind & 1u) == 0) continue;
-      const LatticeCell& cell = kinds[kind];
       std::array<EdgeStream, kMostEdges> streams;
-      for (std::size_t e = 0; e < cell.edges.size(); ++e) {
-        const std::size_t of = r + rows_.steps(cell.edges[e].at);
-        const LatticeRows::Crossed crossed = rows_.crossed(of, cell.edges[e].kind);
-        streams[e] = EdgeStream{crossed.bits, crossed.before, rows_.row(of).first, cell.edges[e].at[0]};
-      }
-      const LatticeCellRow cells = rows_.cells_of_row(r, cell);
+      rows_.streams_of_row(r, at, kind, streams.data());
+      const LatticeCellRow cells = rows_.cells_of_row(r, at, kind);
       Index number = own;
       simplices = write_simplices(cells, streams.data(), own, simplices, end);
       if (number != own) write_own_points(at, cells, streams.data(), number, scratch);
@@ -191,17 +186,17 @@ class LatticeWriter {
 
   /// The coordinates of the samples from `first` on, which is on the grid modulo 2^64 along axis 0.
   [[nodiscard]] PlacesInRow<N> places_in_row(const Sample& first) const noexcept {
-    const auto shift = [&](int a) {
-      return a < layers_ && first[static_cast<std::size_t>(layers_)] % 2 == 1 ? 0.5 * grid_.axes[a].step() : 0.0;
-    };
+    const bool is_odd = first[static_cast<std::size_t>(layers_)] % 2 == 1;
+    const auto shift = [&](int a) { return is_odd && a < layers_ ? 0.5 * grid_.axes[a].step() : 0.0; };
     PlacesInRow<N> places{shift(0), static_cast<std::ptrdiff_t>(first[0])};
     for (int a = 1; a < N; ++a) places.others[a] = grid_.axes[a][first[a]] + shift(a);
     return places;
   }
 
-  /// The last coordinate, which does not depend on others, of the samples at these differences from those of a row.
-  [[nodiscard]] double last_coordinate(const At& row, const LatticePlace& to) const noexcept {
-    return lattice_place<N>(grid_, sample(row, {0, to[1], to[2], to[3]}), layers_)[N - 1];
+  /// The times of vertices between a row's time and the next one.
+  [[nodiscard]] std::pair<Real, Real> times_after(const At& row) const noexcept {
+    const auto time = [&](const LatticePlace& to) { return lattice_place<N>(grid_, sample(row, to), layers_)[N - 1]; };
+    return inside_of<Real>(time({}), time({0, 0, 0, 1}));
   }
 
   /// Writes the vertices and normals on edges from samples of one row to those of another. `from`, `to`: the ends of
@@ -230,53 +225,62 @@ class LatticeWriter {
     }
   }
 
+  /// A cell with own vertices, and what these are means of.
+  struct OwnCell {
+    const LatticeCell* cell;
+    std::array<Index, kMostEdges> vertices;                ///< by edge
+    std::array<std::array<double, N>, kMostEdges> points;  ///< of these
+    At at;                                                 ///< of the cell's sample
+    std::pair<Real, Real> between;                         ///< times of vertices of prisms
+    std::array<double, N> centre;                          ///< the mean of the corners, if it was added
+  };
+
   /// Writes the own vertices of the active cells of a row from `number` on.
   void write_own_points(const At& row, const LatticeCellRow& cells, const EdgeStream* streams, Index number,
                         Scratch& scratch) const {
     scratch.active.resize(rows_.words() * kWordBits);
     const std::size_t count = list_cells(cells, scratch.active.data());
-    for (std::size_t c = 0; c < count; ++c) {
-      const auto found = cells.cell->own.find(scratch.active[c].signature);
-      if (found == cells.cell->own.end()) continue;
-      At at = row;
-      at[0] = scratch.active[c].at;
-      std::array<Index, kMostEdges> vertices;
-      for (std::uint32_t rest = cells.cell->crossed[found->first]; rest != 0; rest &= rest - 1) {
+    OwnCell of;
+    of.cell = cells.cell;
+    of.at = row;
+    if (is_layered_) of.between = times_after(row);
+    for (const ActiveInRow& active : std::span(scratch.active).first(count)) {
+      if (of.cell->contours[active.signature].own == 0) continue;
+      of.at[0] = active.at;
+      for (std::uint32_t rest = of.cell->crossed[active.signature]; rest != 0; rest &= rest - 1) {
         const auto e = static_cast<unsigned>(std::countr_zero(rest));
-        const LatticeRows::Crossed of{streams[e].bits, streams[e].before};
-        vertices[e] = streams[e].first + of[at[0] + static_cast<std::size_t>(streams[e].at)];
+        const LatticeRows::Crossed crossed{streams[e].bits, streams[e].before};
+        of.vertices[e] = streams[e].first + crossed[active.at + static_cast<std::size_t>(streams[e].at)];
+        of.points[e] = widened_point<N>(contour_.vertices[of.vertices[e]]);
       }
-      for (const LatticeCell::OwnVertex& own : found->second) write_own_point(at, *cells.cell, own, vertices, number++);
+      const std::vector<LatticeCell::OwnVertex>& vertices = of.cell->own.at(active.signature);
+      if (std::any_of(vertices.begin(), vertices.end(), [](const auto& own) { return own.part != 0.0; }))
+        add_centre(of);
+      for (const LatticeCell::OwnVertex& own : vertices) write_own_point(of, own, number++);
     }
   }
+  void add_centre(OwnCell& of) const {
+    VertexMean<N, Real> centre;
+    for (const LatticePlace& to : of.cell->corners) centre.add(place_of(sample(of.at, to)));
+    of.centre = centre.mean();
+  }
 
-  /// `at`: the cell's sample; `vertices`: by edge.
-  void write_own_point(const At& at, const LatticeCell& cell, const LatticeCell::OwnVertex& own,
-                       const std::array<Index, kMostEdges>& vertices, Index number) const {
+  void write_own_point(const OwnCell& of, const LatticeCell::OwnVertex& own, Index number) const {
     VertexMean<N, Real> mean;
-    const auto add_layer = [&](const LatticePlace& to) {
-      if (is_layered_) mean.add_layer(last_coordinate(at, to));
-    };
     for (const std::uint8_t e : own.edges) {
-      mean.add(widened_point<N>(contour_.vertices[vertices[e]]));
-      for (const LatticePlace& end : cell.ends[e]) add_layer(end);
-      if (gradients_ != nullptr) mean.add_normal(contour_.normals[vertices[e]]);
+      mean.add(of.points[e]);
+      if (gradients_ != nullptr) mean.add_normal(contour_.normals[of.vertices[e]]);
     }
     for (std::uint32_t rest = own.corners; rest != 0; rest &= rest - 1) {
-      const LatticePlace& to = cell.corners[static_cast<std::size_t>(std::countr_zero(rest))];
-      mean.add(place_of(sample(at, to)));
-      add_layer(to);
-      if (gradients_ != nullptr) mean.add_normal(gradients_->template normal_at<Real>(sample(at, to)));
+      const LatticePlace& to = of.cell->corners[static_cast<std::size_t>(std::countr_zero(rest))];
+      const Sample corner = sample(of.at, to);
+      mean.add(place_of(corner));
+      if (gradients_ != nullptr) mean.add_normal(gradients_->template normal_at<Real>(corner));
     }
     Vertex& vertex = contour_.vertices[number];
-    vertex = mean.place(is_layered_);
+    vertex = own.part == 0.0 ? mean.place(false) : part_of_way<Real>(mean.mean(), of.centre, own.part);
+    if (is_layered_ && own.is_between) vertex[N - 1] = std::clamp(vertex[N - 1], of.between.first, of.between.second);
     if (gradients_ != nullptr) contour_.normals[number] = LatticeGradients<N>::template unit<Real>(mean.normal());
-    if (own.part == 0.0) return;
-    VertexMean<N, Real> centre;
-    for (const LatticePlace& to : cell.corners) centre.add(place_of(sample(at, to)));
-    vertex = part_of_way<Real>(mean.mean(), centre.mean(), own.part);
-    if (is_layered_)
-      keep_between(last_coordinate(at, cell.corners.front()), last_coordinate(at, cell.corners.back()), vertex);
   }
   [[nodiscard]] std::array<double, N> place_of(const Sample& sample) const {
     return places_ != nullptr ? (*places_)[number_of<N>(grid_, sample)] : lattice_place<N>(grid_, sample, layers_);

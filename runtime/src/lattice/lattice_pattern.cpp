@@ -10,6 +10,7 @@
 
 #include "complex/built_cells.hpp"
 #include "complex/cell_groups.hpp"
+#include "image/bitplanes.hpp"
 #include "lattice/lattice_grid.hpp"
 #include "tegl/generated/cells.hpp"
 
@@ -80,6 +81,16 @@ std::vector<std::uint8_t> edges_in_order(const LatticeCell& cell, std::uint64_t 
   return edges;
 }
 
+/// Whether a vertex is the mean of points at both times of a prism, or between them.
+bool has_both_times(const LatticeCell& cell, const LatticeCell::OwnVertex& own) {
+  std::array<bool, 2> has{};
+  for (const std::uint8_t e : own.edges)
+    for (const LatticePlace& end : cell.ends[e]) has[static_cast<std::size_t>(end[3])] = true;
+  for (std::uint32_t rest = own.corners; rest != 0; rest &= rest - 1)
+    has[static_cast<std::size_t>(cell.corners[static_cast<std::size_t>(std::countr_zero(rest))][3])] = true;
+  return has[0] && has[1];
+}
+
 /// Adds the contour of a signature, whose vertices are all on edges or inside.
 void add_contour(LatticeCell& cell, const CellTable& table, unsigned signature, const CellContour& contour) {
   const tables::CellList& list = contour.list();
@@ -95,13 +106,11 @@ void add_contour(LatticeCell& cell, const CellTable& table, unsigned signature, 
   cell.lists.resize(cell.lists.size() + LatticeCell::kMargin);
   const unsigned first_side = list.shared_vertices + list.cone_vertices;
   for (unsigned j = 0; j < list.added(); ++j) {
-    const std::uint64_t mask = contour.mask(j);
-    const bool is_collar = j >= list.added() - list.collar_vertices;
-    cell.own[signature].push_back({edges_in_order(cell, mask),
-                                   static_cast<std::uint32_t>(mask & ((std::uint64_t{1} << table.corner_count) - 1)),
-                                   j < first_side ? 0.0
-                                   : is_collar    ? 0.25
-                                                  : 0.5});
+    LatticeCell::OwnVertex& own = cell.own[signature].emplace_back();
+    own.edges = edges_in_order(cell, contour.mask(j));
+    own.corners = static_cast<std::uint32_t>(contour.mask(j) & ((std::uint64_t{1} << table.corner_count) - 1));
+    if (j >= first_side) own.part = j >= list.added() - list.collar_vertices ? 0.25 : 0.5;
+    if (cell.is_swept) own.is_between = own.part != 0.0 || has_both_times(cell, own);
   }
 }
 
@@ -112,11 +121,13 @@ LatticeCell cell_of(const PatternCell& cell, Lattice lattice, const Grid<N>& gri
   const CellShape shape = find_kind(cell.type)->shape;
   LatticeCell made{cell.at_ends, is_in_time ? prism_of(shape) : shape, is_in_time};
   made.corners = corners_of(cell, is_in_time);
-  for (const LatticePlace& corner : made.corners)
+  for (const LatticePlace& corner : made.corners) {
+    made.shifts.push_back(static_cast<std::uint8_t>(static_cast<std::size_t>(corner[0]) % kWordBits));
     for (std::size_t a = 0; a < 4; ++a) {
       made.least[a] = std::min(made.least[a], corner[a]);
       made.most[a] = std::max(made.most[a], corner[a]);
     }
+  }
   made.is_reversed =
       is_inverted<N>(made, cell.parity, layer_axis(lattice), grid) != (options.direction == GradientDirection::descent);
   const CellTable& table = tables::cell_table(made.shape, options.triangulation);

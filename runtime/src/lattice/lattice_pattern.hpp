@@ -42,6 +42,7 @@ struct LatticeCell {
     std::vector<std::uint8_t> edges = {};  ///< by the numbers of their samples: the order does not depend on the cell
     std::uint32_t corners = 0;             ///< as bits
     double part = 0.0;                     ///< of the way
+    bool is_between = false;               ///< of prisms: whether it is off both times
   };
   /// The contour of a signature.
   struct Contour {
@@ -55,6 +56,7 @@ struct LatticeCell {
   bool is_reversed = false;                ///< whether simplices have the orientation opposite to the table's
   LatticePlace least{}, most{};            ///< differences of corners
   std::vector<LatticePlace> corners = {};  ///< in the order of the table
+  std::vector<std::uint8_t> shifts = {};   ///< by corner: its bit in the word of the cell's, modulo 64
   std::vector<Edge> edges = {};            ///< in the order of the table
   std::vector<std::array<LatticePlace, 2>> ends = {};   ///< by edge
   std::vector<std::uint32_t> crossed = {};              ///< by signature: edges, as bits

@@ -19,9 +19,24 @@ LatticeRows::LatticeRows(Lattice lattice, const std::array<std::size_t, 4>& size
       words_((sizes[0] + kWordBits - 1) / kWordBits),
       kinds_(std::max(patterns[0].edges.size(), patterns[1].edges.size())),
       high_(1 + row_count() * (words_ + 1), 0),
+      lines_(size_[2] * size_[3]),
       crossed_(row_count() * kinds_ * words_),
       before_(crossed_.size()),
-      rows_(row_count()) {}
+      rows_(row_count()) {
+  for (std::size_t parity = 0; parity < 2; ++parity)
+    for (const LatticeCell& cell : patterns[parity].cells) steps_[parity].push_back(steps_of(cell));
+}
+
+LatticeRows::CellSteps LatticeRows::steps_of(const LatticeCell& cell) const {
+  CellSteps steps;
+  for (const LatticePlace& corner : cell.corners)
+    steps.corners.push_back(static_cast<std::ptrdiff_t>(this->steps(corner) * (words_ + 1)) - (corner[0] < 0 ? 1 : 0));
+  for (const LatticeCell::Edge& edge : cell.edges) {
+    steps.rows.push_back(this->steps(edge.at));
+    steps.words.push_back((steps.rows.back() * kinds_ + edge.kind) * words_);
+  }
+  return steps;
+}
 
 LatticeRows::Block LatticeRows::block(std::size_t b) const noexcept {
   const std::size_t in_line = detail::block_count(size_[1], kRows);
@@ -32,6 +47,7 @@ LatticeRows::Block LatticeRows::block(std::size_t b) const noexcept {
 template <int N>
 bool LatticeRows::classify(const SampleClassifier<N>& samples, const WorkOptions& work) {
   std::atomic<bool> any_missing = false;
+  std::vector<std::uint8_t> states(block_count());
   const auto make_missing = [&] { return std::vector<Word>(kRows * words_); };
   for_each_block(block_count(), 1, work.threads, work.progress, make_missing,
                  [&](std::size_t b, std::size_t, std::size_t, std::vector<Word>& missing) {
@@ -46,7 +62,10 @@ bool LatticeRows::classify(const SampleClassifier<N>& samples, const WorkOptions
                      if (samples.classify(start, at_once, {to, words_ + 1}, {missing.data(), words_}) != 0)
                        any_missing.store(true, std::memory_order_relaxed);
                    }
+                   states[b] = state_of(rows);
                  });
+  for (std::size_t b = 0; b < states.size(); ++b) lines_[block(b).first / size_[1]] |= states[b];
+  find_quiet_lines();
   return any_missing;
 }
 template bool LatticeRows::classify<2>(const SampleClassifier<2>&, const WorkOptions&);
@@ -58,10 +77,76 @@ bool LatticeRows::applies(const At& at, const LatticeCell& cell) const noexcept 
   return has_row(at, cell.least) && has_row(at, cell.most);
 }
 
-LatticeCellRow LatticeRows::cells_of_row(std::size_t r, const LatticeCell& cell) const noexcept {
-  LatticeCellRow row{&cell, {}, words_, -cell.least[0], last(cell)};
-  for (std::size_t c = 0; c < cell.corners.size(); ++c) row.corners[c] = high(r + steps(cell.corners[c]));
-  return row;
+LatticeCellRow LatticeRows::cells_of_row(std::size_t r, const At& at, std::size_t cell) const noexcept {
+  const LatticeCell& of = pattern(at).cells[cell];
+  return {&of, high(r), steps_[parity(at)][cell].corners.data(), words_, -of.least[0], last(of)};
+}
+
+void LatticeRows::streams_of_row(std::size_t r, const At& at, std::size_t cell, EdgeStream* out) const noexcept {
+  const CellSteps& steps = steps_[parity(at)][cell];
+  const std::vector<LatticeCell::Edge>& edges = pattern(at).cells[cell].edges;
+  const std::size_t words = r * kinds_ * words_;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const std::size_t first = words + steps.words[e];
+    out[e] = {crossed_.data() + first, before_.data() + first, rows_[r + steps.rows[e]].first, edges[e].at[0]};
+  }
+}
+
+std::uint64_t LatticeRows::cells(std::size_t r) const noexcept {
+  const At at = this->at(r);
+  std::uint64_t count = 0;
+  for (const LatticeCell& cell : pattern(at).cells)
+    if (applies(at, cell)) count += static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(0, last(cell) + cell.least[0]));
+  return count;
+}
+
+std::uint64_t LatticeRows::count_all_cells() const noexcept {
+  std::uint64_t count = 0;
+  for (std::size_t parity = 0; parity < 2; ++parity)
+    for (const LatticeCell& cell : patterns_[parity].cells) {
+      std::uint64_t in_layer = 1, layers = 0;
+      for (std::size_t a = 0; a < 4; ++a) {
+        const std::ptrdiff_t first = -cell.least[a], end = static_cast<std::ptrdiff_t>(size_[a]) - cell.most[a];
+        if (a != layer_axis_) in_layer *= static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(0, end - first));
+        for (std::ptrdiff_t k = first; a == layer_axis_ && k < end; ++k)
+          if (static_cast<std::size_t>(k) % 2 == parity &&
+              (!cell.at_ends || k == 0 || static_cast<std::size_t>(k) + 1 == size_[a]))
+            ++layers;
+      }
+      count += layers * in_layer;
+    }
+  return count;
+}
+
+std::uint8_t LatticeRows::state_of(const Block& rows) const noexcept {
+  const auto samples = static_cast<std::ptrdiff_t>(size_[0]);
+  Word any_high = 0, any_low = 0;
+  for (std::size_t r = rows.first; r < rows.first + rows.count; ++r) {
+    const Word* const bits = high(r);
+    for (std::size_t w = 0; w < words_; ++w) {
+      any_high |= bits[w];
+      any_low |= ~bits[w] & (w + 1 < words_ ? ~Word{0} : range(w, 0, samples));
+    }
+  }
+  return static_cast<std::uint8_t>((any_low != 0 ? kLow : 0) | (any_high != 0 ? kHigh : 0));
+}
+
+/// A line is quiet if all lines near it are alike: those that are as far away as corners of one cell.
+void LatticeRows::find_quiet_lines() {
+  std::array<std::ptrdiff_t, 4> reach{};
+  for (const LayerPattern& pattern : patterns_)
+    for (const LatticeCell& cell : pattern.cells)
+      for (std::size_t a = 2; a < 4; ++a) reach[a] = std::max(reach[a], cell.most[a] - cell.least[a]);
+  for (std::size_t a = 2; a < 4; ++a) {
+    const std::vector<std::uint8_t> of = lines_;
+    const std::size_t step = a == 2 ? 1 : size_[2];
+    for (std::size_t line = 0; line < lines_.size(); ++line) {
+      const auto at = static_cast<std::ptrdiff_t>(line / step % size_[a]),
+                 last = static_cast<std::ptrdiff_t>(size_[a]) - 1;
+      for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(at - reach[a], 0); i <= std::min(at + reach[a], last); ++i)
+        lines_[line] |= of[line + static_cast<std::size_t>(i - at) * step];
+    }
+  }
 }
 
 std::size_t LatticeRows::border_of(const At& at) const noexcept {
@@ -98,9 +183,12 @@ void LatticeRows::find_crossed(std::size_t r, const At& at, Scratch& scratch) {
   const std::vector<EdgeKind>& kinds = pattern(at).edges;
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     const LatticePlace& to = kinds[kind].to;
-    if (!has_row(at, to)) continue;
-    const Word* const there = high(r + steps(to));
     const std::size_t first = (r * kinds_ + kind) * words_;
+    if (!has_row(at, to)) {
+      std::fill_n(crossed_.begin() + static_cast<std::ptrdiff_t>(first), words_, Word{0});
+      continue;
+    }
+    const Word* const there = high(r + steps(to));
     for (std::size_t w = 0; w < words_; ++w) {
       Word bits = here[w] ^ shifted(there, w, to[0]);
       if (bits != 0) {
@@ -124,14 +212,14 @@ void LatticeRows::find_crossed(std::size_t r, const At& at, Scratch& scratch) {
 void LatticeRows::find_signatures(OccurringSignatures& signatures, const WorkOptions& work) {
   for_each_block(block_count(), 1, work.threads, work.progress, [&](std::size_t b, std::size_t, std::size_t) {
     Block rows = block(b);
+    if (is_quiet(rows)) return;
     for (std::size_t r = rows.first; r < rows.first + rows.count; ++r, ++rows.at[1]) {
       const std::vector<LatticeCell>& cells = pattern(rows.at).cells;
       for (std::size_t c = 0; c < cells.size(); ++c) {
         if (!applies(rows.at, cells[c])) continue;
-        const std::uint32_t active = mark_signatures(cells_of_row(r, cells[c]), signatures.of(parity(rows.at), c));
+        const std::uint32_t active = mark_signatures(cells_of_row(r, rows.at, c), signatures.of(parity(rows.at), c));
         rows_[r].active += active;
         if (active != 0) rows_[r].kinds |= 1u << c;
-        rows_[r].cells += static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(0, last(cells[c]) + cells[c].least[0]));
       }
     }
   });
@@ -144,13 +232,12 @@ void LatticeRows::count_row(std::size_t r, const At& at) {
   const std::vector<LatticeCell>& cells = pattern(at).cells;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     if (knows_active_ ? (row.kinds >> c & 1u) == 0 : !applies(at, cells[c])) continue;
-    const LatticeCellCount count = count_cells(cells_of_row(r, cells[c]));
+    const LatticeCellCount count = count_cells(cells_of_row(r, at, c));
     row.simplices += count.simplices;
     row.own += count.own;
     if (knows_active_) continue;
     row.active += count.active;
     if (count.active != 0) row.kinds |= 1u << c;
-    row.cells += static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(0, last(cells[c]) + cells[c].least[0]));
   }
 }
 
@@ -159,6 +246,7 @@ void LatticeRows::count(const WorkOptions& work) {
   for_each_block(block_count(), 1, work.threads, work.progress, make_scratch,
                  [&](std::size_t b, std::size_t, std::size_t, Scratch& scratch) {
                    Block rows = block(b);
+                   if (is_quiet(rows)) return;
                    for (std::size_t r = rows.first; r < rows.first + rows.count; ++r, ++rows.at[1]) {
                      find_crossed(r, rows.at, scratch);
                      count_row(r, rows.at);
@@ -171,9 +259,9 @@ void LatticeRows::count(const WorkOptions& work) {
     row.first_simplex = simplices_;
     vertices_ += on_edges + row.own;
     simplices_ += row.simplices;
-    cells_ += row.cells;
     active_cells_ += row.active;
   }
+  cells_ = count_all_cells();
   check_vertex_count(vertices_, kMaxVertices);
 }
 

@@ -19,6 +19,7 @@
 #include "image/sample_source.hpp"
 #include "lattice/lattice_pattern.hpp"
 #include "lattice/lattice_simplices.hpp"
+#include "tegl/contour.hpp"
 #include "tegl/work.hpp"
 
 namespace tegl::detail {
@@ -69,12 +70,14 @@ class LatticeRows {
 
   /// Numbers of a row: its vertices on edges come first, then the own vertices of its cells.
   struct Row {
-    std::uint32_t own = 0, simplices = 0, cells = 0, active = 0;  ///< how many
-    std::uint32_t kinds = 0;                                      ///< of active cells, as bits by cell of the pattern
+    std::uint32_t own = 0, simplices = 0, active = 0;  ///< how many
+    std::uint32_t kinds = 0;                           ///< of active cells, as bits by cell of the pattern
     Index first = 0, first_own = 0;
     std::uint64_t first_simplex = 0;
   };
   [[nodiscard]] const Row& row(std::size_t r) const noexcept { return rows_[r]; }
+  /// Number of cells of the samples of row `r`.
+  [[nodiscard]] std::uint64_t cells(std::size_t r) const noexcept;
 
   /// The crossed edges of one kind of a row's samples.
   struct Crossed {
@@ -86,6 +89,7 @@ class LatticeRows {
       return before[i / kWordBits] + count_bits(bits[i / kWordBits] & below);
     }
   };
+  /// For a row with vertices on edges, or with active cells that have the edge.
   [[nodiscard]] Crossed crossed(std::size_t r, std::size_t kind) const noexcept {
     const std::size_t at = (r * kinds_ + kind) * words_;
     return {crossed_.data() + at, before_.data() + at};
@@ -105,10 +109,10 @@ class LatticeRows {
            static_cast<std::size_t>(to[1]);
   }
 
-  /// Whether a row has cells like this one.
-  [[nodiscard]] bool applies(const At& at, const LatticeCell& cell) const noexcept;
-  /// The cells of row `r`, which has them.
-  [[nodiscard]] LatticeCellRow cells_of_row(std::size_t r, const LatticeCell& cell) const noexcept;
+  /// The cells of row `r`, which has them. `cell`: of the row's pattern.
+  [[nodiscard]] LatticeCellRow cells_of_row(std::size_t r, const At& at, std::size_t cell) const noexcept;
+  /// The vertices on the edges of active cells of row `r`, to `out`, by edge.
+  void streams_of_row(std::size_t r, const At& at, std::size_t cell, EdgeStream* out) const noexcept;
 
  private:
   /// The bits of word w for the samples `first` ... `end` - 1.
@@ -133,6 +137,16 @@ class LatticeRows {
   }
   [[nodiscard]] const Word* high(std::size_t r) const noexcept { return high_.data() + 1 + r * (words_ + 1); }
   [[nodiscard]] std::size_t parity(const At& at) const noexcept { return at[layer_axis_] % 2; }
+  /// Whether a row has cells like this one.
+  [[nodiscard]] bool applies(const At& at, const LatticeCell& cell) const noexcept;
+
+  /// What a cell needs of other rows, relative to its own one.
+  struct CellSteps {
+    std::vector<std::ptrdiff_t> corners;  ///< LatticeCellRow::corners
+    std::vector<std::size_t> rows;        ///< by edge: its row
+    std::vector<std::size_t> words;       ///< by edge: its words in `crossed_`
+  };
+  [[nodiscard]] CellSteps steps_of(const LatticeCell& cell) const;
 
   /// The first and one past the last sample of a range.
   using Range = std::array<std::ptrdiff_t, 2>;
@@ -155,6 +169,13 @@ class LatticeRows {
   }
   [[nodiscard]] Block block(std::size_t b) const noexcept;
 
+  /// The block's rows are all low or all high, and so are all that can have corners or edges of the same cells.
+  [[nodiscard]] bool is_quiet(const Block& rows) const noexcept { return lines_[rows.first / size_[1]] != kMixed; }
+  /// Whether samples are low or high.
+  [[nodiscard]] std::uint8_t state_of(const Block& rows) const noexcept;
+  void find_quiet_lines();
+  [[nodiscard]] std::uint64_t count_all_cells() const noexcept;
+
   /// Working memory of a thread: ranges that were found, by border.
   struct Scratch {
     std::vector<std::optional<Ranges>> ranges;
@@ -168,8 +189,12 @@ class LatticeRows {
   std::size_t words_, kinds_;
   bool knows_active_ = false;  ///< whether the rows have their active cells
   std::vector<Word> high_;     ///< 0, then rows x (words + 1), the last one of which is 0
-  std::vector<Word> crossed_;
-  std::vector<std::uint32_t> before_;
+  /// Lines are the rows along axis 1. Whether samples are low or high: of the line, then of all lines near it.
+  static constexpr std::uint8_t kLow = 1, kHigh = 2, kMixed = kLow | kHigh;
+  std::vector<std::uint8_t> lines_;
+  std::array<std::vector<CellSteps>, 2> steps_;  ///< by parity and cell
+  Buffer<Word> crossed_;                         ///< of rows that are not quiet
+  Buffer<std::uint32_t> before_;
   std::vector<Row> rows_;
   std::uint64_t vertices_ = 0, simplices_ = 0, cells_ = 0, active_cells_ = 0;
 };

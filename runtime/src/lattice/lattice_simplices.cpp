@@ -26,19 +26,16 @@ template <std::size_t Corners>
 class CellWord {
  public:
   HWY_INLINE explicit CellWord(const LatticeCellRow& row) : row_(row), corners_(row.cell->corners.size()) {
-    for (std::size_t c = 0; c < corners_; ++c) {
-      const std::ptrdiff_t along = row.cell->corners[c][0];
-      from_[c] = row.corners[c] + (along < 0 ? -1 : 0);
-      shift_[c] = along < 0 ? kWordBits - 1 : static_cast<std::size_t>(along);
-    }
+    for (std::size_t c = 0; c < corners_; ++c) from_[c] = row.bits + row.corners[c];
   }
 
   /// Reads the corners of the cells from word w on. Returns the active cells.
   HWY_INLINE Word read(std::size_t w) {
+    const std::uint8_t* const shifts = row_.cell->shifts.data();
     Word any = 0, all = ~Word{0};
     for (std::size_t c = 0; c < corners_; ++c) {
       const Word* const from = from_[c] + w;
-      bits_[c] = from[0] >> shift_[c] | from[1] << 1 << (kWordBits - 1 - shift_[c]);
+      bits_[c] = from[0] >> shifts[c] | from[1] << 1 << (kWordBits - 1 - shifts[c]);
       any |= bits_[c];
       all &= bits_[c];
     }
@@ -72,7 +69,6 @@ class CellWord {
   const LatticeCellRow& row_;
   std::size_t corners_;
   std::array<const Word*, Corners> from_;
-  std::array<std::size_t, Corners> shift_;
   alignas(64) std::array<Word, Corners> bits_{};  // 0 for corners that the cell does not have
 };
 

@@ -22,8 +22,11 @@ namespace tegl::detail {
 struct LatticeCellRow {
   static constexpr std::size_t kMostCorners = 16;
   const LatticeCell* cell;
-  /// By corner: the row of bits in which it is. The words before the first and after the last one are 0.
-  std::array<const Word*, kMostCorners> corners;
+  const Word*
+      bits;  ///< the first word of the cells' samples; before the first word of a row and after its last one is 0
+  /// By corner: the words from `bits` to the first one with the corners of 64 cells, of which LatticeCell::shifts bits
+  /// belong to cells before.
+  const std::ptrdiff_t* corners;
   std::size_t words;
   std::ptrdiff_t first, end;  ///< the samples that have the cell: from `first` on, before `end`
 };

@@ -152,7 +152,7 @@ class LatticeStream {
     add_simplices(contour, rows, first_row(part, part.first - (part.first == 0 ? 0 : kLag)),
                   first_row(part, simplices_to));
     for (std::size_t r = from; r < to; ++r) {
-      stats_.tiles += rows.row(r).cells;
+      stats_.tiles += rows.cells(r);
       stats_.active_tiles += rows.row(r).active;
     }
   }
@@ -205,6 +205,7 @@ class LatticeStream {
     const auto start =
         static_cast<std::ptrdiff_t>((static_cast<std::size_t>(part.begin) * rows_in_layer() + r) * samples);
     Index v = rows.row(r).first;
+    if (v == rows.row(r).first_own) return;
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       const auto& to = kinds[kind].to;
       const std::ptrdiff_t step =
