@@ -2,9 +2,11 @@
 //
 // Time of contours on lattices, beside cubic samples and beside the lattice's complex; or on curved grids and with
 // periodic axes, beside the plain contour: a gyroid with equally many samples, one thread, processor time, several runs
-// taken in turn, of lattices the minimum.
+// taken in turn, of lattices the minimum. In 4D a sum of waves, a small ball, and noise in an eighth of the samples,
+// also with the memory beyond image and contour.
 //
 //     lattice_bench [SAMPLES_ALONG_AXIS] [RUNS]
+//     lattice_bench 4d [SAMPLES_ALONG_AXIS] [RUNS]
 //     lattice_bench curved [SAMPLES_ALONG_AXIS] [RUNS]
 #include <algorithm>
 #include <array>
@@ -14,9 +16,14 @@
 #include <cstdlib>
 #include <functional>
 #include <limits>
+#include <numbers>
+#include <optional>
+#include <random>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "memory.hpp"
 #include "tegl/curved.hpp"
 #include "tegl/lattice.hpp"
 #include "tegl/periodic.hpp"
@@ -27,11 +34,24 @@ namespace {
 using namespace tegl;
 
 struct Case {
-  const char* name;
+  std::string name;
   std::function<ExtractStats()> run;
   ExtractStats best = {};
   double seconds = std::numeric_limits<double>::infinity();
 };
+
+/// Measures all cases in turn.
+void measure_in_turn(std::vector<Case>& cases, int runs) {
+  for (int run = 0; run < runs; ++run)
+    for (Case& each : cases) {
+      const double start = bench::worked_seconds();
+      const ExtractStats stats = each.run();
+      const double seconds = bench::worked_seconds() - start;
+      if (seconds >= each.seconds) continue;
+      each.seconds = seconds;
+      each.best = stats;
+    }
+}
 
 /// Samples of a gyroid in a box of equal volume per sample; `layer`: distance of layers in steps; 1: not staggered.
 std::vector<float> gyroid(std::size_t n, double layer, double size = 50.0) {
@@ -221,12 +241,114 @@ int measure_curved(std::size_t n, int runs) {
   return 0;
 }
 
+/// A field of four coordinates, sampled at n^4 places.
+struct Field4 {
+  const char* name;
+  std::size_t n;
+  std::function<double(const std::array<double, 4>&)> value;
+};
+
+/// The samples of a field on a lattice, or on a cubic grid, with steps of equal volume around the origin.
+std::vector<float> sampled(const Field4& field, std::optional<Lattice> lattice) {
+  const std::size_t layers = lattice == Lattice::fcc_in_time ? 2 : 3;
+  const double layer = lattice ? layer_step(*lattice) : 1.0, step = std::pow(layer, -0.25);
+  std::vector<float> values;
+  std::array<std::size_t, 4> i{};
+  for (i[3] = 0; i[3] < field.n; ++i[3])
+    for (i[2] = 0; i[2] < field.n; ++i[2])
+      for (i[1] = 0; i[1] < field.n; ++i[1])
+        for (i[0] = 0; i[0] < field.n; ++i[0]) {
+          std::array<double, 4> x;
+          for (std::size_t a = 0; a < 4; ++a) {
+            const double half = lattice && a < layers && i[layers] % 2 == 1 ? 0.5 : 0.0;
+            const double at = static_cast<double>(i[a]) + half - 0.5 * static_cast<double>(field.n);
+            x[a] = at * step * (lattice && a == layers ? layer : 1.0);
+          }
+          values.push_back(static_cast<float>(field.value(x)));
+        }
+  return values;
+}
+
+/// The most memory of a contour beyond the image and the contour, in bytes.
+double working_memory(const std::function<Extraction<4, float>()>& extract) {
+  bench::give_back_memory();
+  const std::uint64_t before = bench::memory_bytes("VmRSS");
+  bench::reset_peak_memory();
+  const Extraction<4, float> result = extract();
+  const std::size_t contour = sizeof(result.contour.vertices[0]) * result.contour.vertices.size() +
+                              sizeof(result.contour.simplices[0]) * result.contour.simplices.size();
+  return static_cast<double>(bench::memory_bytes("VmHWM")) - static_cast<double>(before) - static_cast<double>(contour);
+}
+
+/// Contours of one field in 4D.
+void measure_field(const Field4& field, int runs) {
+  ExtractOptions options;
+  options.work.threads = 1;
+  options.triangulation = Triangulation::compact;
+  const Grid<4> grid = Grid<4>::unit({field.n, field.n, field.n, field.n});
+  std::vector<Case> cases;
+  std::vector<double> memory;
+  const std::vector<float> cubic = sampled(field, {});
+  const std::vector<float> d4 = sampled(field, Lattice::d4), fcc = sampled(field, Lattice::fcc_in_time);
+  const auto add = [&](const std::string& name, std::function<Extraction<4, float>()> extract) {
+    memory.push_back(working_memory(extract));
+    cases.push_back({std::string(field.name) + ", " + name, [extract] { return extract().stats; }});
+  };
+  const auto add_lattice = [&](Lattice lattice, const std::vector<float>& values) {
+    const Image<float, 4> image(values.data(), grid);
+    const std::string name(name_of(lattice));
+    add(name, [=] { return extract_lattice_with_stats(image, lattice, 0.01, options); });
+    add(name + ", complex", [=] { return extract_with_stats(lattice_complex(image, lattice), 0.01, options); });
+  };
+  add("cubic", [&] { return extract_with_stats(Image<float, 4>(cubic.data(), grid), 0.01, options); });
+  add_lattice(Lattice::d4, d4);
+  add_lattice(Lattice::fcc_in_time, fcc);
+  measure_in_turn(cases, runs);
+  const auto samples = static_cast<double>(cubic.size());
+  for (std::size_t i = 0; i < cases.size(); ++i)
+    std::printf("| %s | %zu | %zu | %.2f | %.3f | %.3f | %.1f | %.2f |\n", cases[i].name.c_str(), cubic.size(),
+                static_cast<std::size_t>(cases[i].best.active_tiles), 1e3 * cases[i].seconds,
+                1e9 * cases[i].best.classify_seconds / samples, 1e9 * cases[i].seconds / samples,
+                1e9 * cases[i].seconds / static_cast<double>(cases[i].best.active_tiles), memory[i] / samples);
+}
+
+/// Contours in 4D.
+int measure_4d(std::size_t n, int runs) {
+  std::printf(
+      "| contour | samples | active cells | ms | classify, ns per sample | ns per sample | ns per active cell | "
+      "working "
+      "memory, bytes per sample |\n|---|---|---|---|---|---|---|---|\n");
+  const double turn = 2.0 * std::numbers::pi / 20.0;
+  measure_field({"waves", n,
+                 [&](const std::array<double, 4>& x) {
+                   double sum = 0.0;
+                   for (std::size_t a = 0; a < 4; ++a) sum += std::sin(turn * x[a]) * std::cos(turn * x[(a + 1) % 4]);
+                   return sum;
+                 }},
+                runs);
+  measure_field({"a small ball", n,
+                 [](const std::array<double, 4>& x) { return 2.5 - std::hypot(std::hypot(x[0], x[1], x[2]), x[3]); }},
+                runs);
+  std::mt19937 random(1);
+  measure_field(
+      {"noise", n * 3 / 5,
+       [&](const std::array<double, 4>&) { return std::uniform_real_distribution<double>(-1.0, 1.0)(random); }},
+      runs);
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "curved")
     return measure_curved(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 256,
                           argc > 3 ? std::max(1, std::atoi(argv[3])) : 15);
+  if (argc > 1 && std::string_view(argv[1]) == "4d")
+    return measure_4d(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 40,
+                      argc > 3 ? std::max(1, std::atoi(argv[3])) : 5);
+  if (argc > 1 && std::string_view(argv[1]) == "4d")
+    return measure_4d(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 40,
+                      argc > 3 ? std::max(1, std::atoi(argv[3])) : 5);
   const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 192;
   const int runs = argc > 2 ? std::atoi(argv[2]) : 7;
   ExtractOptions options;
@@ -241,21 +363,14 @@ int main(int argc, char** argv) {
       {"fcc", [&] { return extract_lattice_with_stats(fcc_image, Lattice::fcc, 0.01, options).stats; }},
       {"bcc", [&] { return extract_lattice_with_stats(bcc_image, Lattice::bcc, 0.01, options).stats; }},
       {"fcc, complex", [&] { return extract_with_stats(complex, 0.01, options).stats; }}};
-  for (int run = 0; run < runs; ++run)
-    for (Case& each : cases) {
-      const double start = bench::worked_seconds();
-      const ExtractStats stats = each.run();
-      const double seconds = bench::worked_seconds() - start;
-      if (seconds >= each.seconds) continue;
-      each.seconds = seconds;
-      each.best = stats;
-    }
+  measure_in_turn(cases, runs);
   std::printf(
       "| %zu^3 samples | active cells | ms | classify, ns per sample | ns per active cell |\n|---|---|---|---|---|\n",
       n);
   const auto samples = static_cast<double>(n * n * n);
   for (const Case& each : cases)
-    std::printf("| %s | %zu | %.1f | %.3f | %.1f |\n", each.name, static_cast<std::size_t>(each.best.active_tiles),
-                1e3 * each.seconds, 1e9 * each.best.classify_seconds / samples,
+    std::printf("| %s | %zu | %.1f | %.3f | %.1f |\n", each.name.c_str(),
+                static_cast<std::size_t>(each.best.active_tiles), 1e3 * each.seconds,
+                1e9 * each.best.classify_seconds / samples,
                 1e9 * each.seconds / static_cast<double>(each.best.active_tiles));
 }

@@ -11,7 +11,7 @@ the same float values, and take turns, so that what disturbs the machine meets a
 Prints medians of milliseconds as a table in Markdown: with one thread milliseconds of processor time, which other
 programs hardly influence. VTK: points merged, no normals, as tegl's vertices are shared, too;
 and with points not merged, its default. One thread: sequential processing; more: VTK's own number. With --json, also
-runs lattice_bench (of lattices, and of curved and periodic grids) and mixed_meshes beside PROGRAM, and writes all
+runs lattice_bench (of lattices, also in 4D, and of curved and periodic grids) and mixed_meshes beside PROGRAM, and writes all
 figures to FILE.
 """
 
@@ -229,6 +229,7 @@ def main() -> None:
     folder = pathlib.Path(options.program).resolve().parent
     result = {"machine": machine.describe(folder.parent), "vtk": vtkVersion.GetVTKVersion(), "meshes": meshes,
               "lattices": rows_of(folder / "lattice_bench", "160"),
+              "lattices in 4D": rows_of(folder / "lattice_bench", "4d"),
               "curved and periodic grids": rows_of(folder / "lattice_bench", "curved"),
               "types of cells": rows_of(folder / "mixed_meshes")}
     options.json.write_text(json.dumps(result, indent=1) + "\n")

@@ -47,9 +47,10 @@ requires DimensionBetween<N, 2, 4>
                                                              const AxisPeriods<N>& periods = {});
 
 /// Extracts the contour of an image on a lattice. Cells that would need samples outside of the image are left out, so
-/// its sides are uneven; at the first and last layer, octahedra are cut to pyramids. In 2D and 3D without missing
-/// values, caps and periods, rows of samples are classified 64 at a time, and the cells are not stored; otherwise the
-/// cells of `lattice_complex` are contoured. Both ways give the same vertices and simplices, in another order.
+/// its sides are uneven; at the first and last layer, octahedra are cut to pyramids. Without missing values, caps and
+/// periods, rows of samples are classified 64 at a time, and the cells are not stored; otherwise, and in 4D for rules
+/// by the data and barycentric contours, the cells of `lattice_complex` are contoured. Both ways give the same vertices
+/// and simplices, in another order.
 ///
 /// ExtractOptions::close closes the contour at the uneven sides; caps are the high part of the border of
 /// `lattice_complex`.
@@ -67,7 +68,8 @@ requires DimensionBetween<N, 2, 4>
 /// interpolated along edges; they are exact for linear functions. Errors: those of `lattice_complex` and, for options,
 /// of `extract` of complexes; InvalidArgument for other normals, periods that are not the number of samples x the step,
 /// and cells of half a period or more (two steps across layers). The result does not depend on the number of threads.
-/// O(P) time; about 1.3 bytes per sample of fcc, or, if cells are stored, twice the memory of `lattice_complex`.
+/// O(P) time; about 1.3 bytes per sample of fcc and up to 7 of d4 and fcc_in_time (a third for contours that reach few
+/// rows), or, if cells are stored, twice the memory of `lattice_complex`.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,

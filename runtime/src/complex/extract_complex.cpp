@@ -20,6 +20,7 @@
 #include "complex/contour_numbers.hpp"
 #include "complex/edge_alpha.hpp"
 #include "complex/point_gradients.hpp"
+#include "complex/vertex_mean.hpp"
 #include "kernel/split_nonmanifold.hpp"
 #include "tegl/complex.hpp"
 #include "tegl/error.hpp"
@@ -28,17 +29,6 @@ namespace tegl {
 
 namespace detail {
 namespace {
-
-/// Coordinates between two layers of the last axis, as far from both as their type distinguishes; both layers if there
-/// are none between.
-template <class Real>
-std::pair<Real, Real> inside_of(double low_layer, double high_layer) noexcept {
-  const auto [low, high] = std::minmax({static_cast<Real>(low_layer), static_cast<Real>(high_layer)});
-  const Real least = (high - low) * (std::numeric_limits<Real>::epsilon() / 2);
-  const Real from = std::max(std::nextafter(low, high), low + least);
-  const Real to = std::min(std::nextafter(high, low), high - least);
-  return from > to ? std::pair{low, high} : std::pair{from, to};
-}
 
 /// Vertices are between points: if these are in the range of Real, vertices are, too.
 template <class Real, int N>
@@ -211,69 +201,39 @@ class ComplexWriter {
   using Point = std::array<double, N>;
   using Vertex = std::array<Real, N>;
 
-  /// The mean of points, within their bounds; between two layers, off both. Its normal is the mean of their normals.
+  /// The mean of points. Its normal is the mean of their normals.
   class Mean {
    public:
-    explicit Mean(const ComplexWriter& writer) : writer_(writer) {
-      lowest_.fill(std::numeric_limits<double>::infinity());
-      highest_.fill(-std::numeric_limits<double>::infinity());
-    }
+    explicit Mean(const ComplexWriter& writer) : writer_(writer) {}
     /// Adds a vertex on an edge.
     void add_vertex(Index v) noexcept {
-      Point point;
-      for (std::size_t i = 0; i < N; ++i) point[i] = double{writer_.contour_.vertices[v][i]};
-      add(point);
-      for (const Index end : writer_.numbers_.edge_ends()[v]) add_layer(writer_.complex_.points()[end][N - 1]);
-      if (writer_.gradients_ != nullptr) add_normal(writer_.contour_.normals[v]);
+      add(widened_point<N>(writer_.contour_.vertices[v]));
+      for (const Index end : writer_.numbers_.edge_ends()[v]) mean_.add_layer(writer_.complex_.points()[end][N - 1]);
+      if (writer_.gradients_ != nullptr) mean_.add_normal(writer_.contour_.normals[v]);
     }
     /// Adds a corner of a cell.
     void add_corner(Index p) noexcept {
       add(writer_.complex_.points()[p]);
-      add_layer(writer_.complex_.points()[p][N - 1]);
-      if (writer_.gradients_ != nullptr) add_normal(writer_.normal_of(writer_.gradients_->at(p)));
+      mean_.add_layer(writer_.complex_.points()[p][N - 1]);
+      if (writer_.gradients_ != nullptr) mean_.add_normal(writer_.normal_of(writer_.gradients_->at(p)));
     }
-    [[nodiscard]] Point mean() const noexcept {
-      Point mean;
-      for (std::size_t i = 0; i < N; ++i) mean[i] = std::clamp(sum_[i] / count_, lowest_[i], highest_[i]);
-      return mean;
-    }
-    [[nodiscard]] Vertex normal() const noexcept { return PointGradients<N>::template unit<Real>(normal_); }
+    [[nodiscard]] Point mean() const noexcept { return mean_.mean(); }
+    [[nodiscard]] Vertex normal() const noexcept { return PointGradients<N>::template unit<Real>(mean_.normal()); }
     [[nodiscard]] Vertex place() const noexcept {
-      Vertex vertex;
-      const Point mean = this->mean();
-      for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(mean[i]);
-      if (writer_.is_layered_ && low_layer_ != high_layer_) {
-        const auto [low, high] = inside_of<Real>(low_layer_, high_layer_);
-        vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
-      }
+      Vertex vertex = mean_.place(writer_.is_layered_);
       writer_.keep_inside(vertex);
       return vertex;
     }
 
    private:
-    void add(Point point) noexcept {
-      if (count_ == 0) first_ = point;
-      point = writer_.near(first_, point);
-      for (std::size_t i = 0; i < N; ++i) {
-        sum_[i] += point[i];
-        lowest_[i] = std::min(lowest_[i], point[i]);
-        highest_[i] = std::max(highest_[i], point[i]);
-      }
-      ++count_;
-    }
-    void add_normal(const Vertex& normal) noexcept {
-      for (std::size_t i = 0; i < N; ++i) normal_[i] += double{normal[i]};
-    }
-    void add_layer(double layer) noexcept {
-      low_layer_ = std::min(low_layer_, layer);
-      high_layer_ = std::max(high_layer_, layer);
+    void add(const Point& point) noexcept {
+      if (!first_) first_ = point;
+      mean_.add(writer_.near(*first_, point));
     }
 
     const ComplexWriter& writer_;
-    Point sum_{}, lowest_, highest_, first_{}, normal_{};
-    double count_ = 0;
-    double low_layer_ = std::numeric_limits<double>::infinity();
-    double high_layer_ = -std::numeric_limits<double>::infinity();
+    VertexMean<N, Real> mean_;
+    std::optional<Point> first_;
   };
 
   /// The place of a point nearest to another, modulo the periods.
@@ -481,8 +441,7 @@ class ComplexWriter {
 
   /// Moves a vertex off the layers of two points.
   void keep_between(Index p, Index q, Vertex& vertex) const noexcept {
-    const auto [low, high] = inside_of<Real>(complex_.points()[p][N - 1], complex_.points()[q][N - 1]);
-    vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
+    detail::keep_between(complex_.points()[p][N - 1], complex_.points()[q][N - 1], vertex);
   }
 
   /// A part of the way from a point to the cell's centre.
@@ -490,8 +449,7 @@ class ComplexWriter {
     Mean centre(*this);
     for (const Index corner : corners) centre.add_corner(corner);
     const Point a = point.mean(), b = near(a, centre.mean());
-    Vertex vertex;
-    for (std::size_t i = 0; i < N; ++i) vertex[i] = static_cast<Real>(a[i] * (1 - part) + b[i] * part);
+    Vertex vertex = part_of_way<Real>(a, b, part);
     keep_inside(vertex);
     if (is_layered_) keep_between(corners.front(), corners.back(), vertex);
     return vertex;

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Contours of images on lattices: by rows of bits in 2D and 3D, otherwise as complexes; normals by gradients on the
-// lattice.
+// Contours of images on lattices: by rows of bits, if these give the contour (has_rows), otherwise as complexes;
+// normals by gradients on the lattice.
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
@@ -21,6 +23,7 @@
 #include "complex/edge_alpha.hpp"
 #include "complex/image_points.hpp"
 #include "complex/point_gradients.hpp"
+#include "complex/vertex_mean.hpp"
 #include "image/edge_alphas.hpp"
 #include "image/row_source.hpp"
 #include "kernel/extract_points.hpp"
@@ -53,12 +56,25 @@ bool is_in_range(const Grid<N>& grid) {
   return std::all_of(size.begin(), size.end(), [](double x) { return x <= double{std::numeric_limits<Real>::max()}; });
 }
 
+/// Whether there are prisms between all times: these are apart from space, and ascend or descend.
+template <int N>
+bool has_prisms(const Grid<N>& grid) {
+  const Axis& axis = grid.axes[N - 1];
+  if (!grid.is_separate(N - 1) || axis.size() < 2) return false;
+  const auto time = [&](std::size_t k) { return grid.linear[N - 1][N - 1] * axis[k] + grid.offset[N - 1]; };
+  const bool descends = time(0) > time(1);
+  for (std::size_t k = 1; k < axis.size(); ++k)
+    if (descends ? !(time(k - 1) > time(k)) : !(time(k - 1) < time(k))) return false;
+  return true;
+}
+
 /// Writes a contour that LatticeRows has counted.
 template <int N, class Real>
 class LatticeWriter {
  public:
   using Vertex = std::array<Real, N>;
   using Sample = std::array<std::size_t, N>;
+  using At = LatticeRows::At;
 
   /// Working memory of a thread.
   struct Scratch {
@@ -69,16 +85,18 @@ class LatticeWriter {
   };
 
   /// `read`: for the samples' type. `places`: of samples, in place of those on the grid; null: none.
-  LatticeWriter(const SampleSource<N>& source, ReadSamples read, const Grid<N>& grid, const LatticeRows& rows,
-                const LatticeGradients<N>* gradients, const std::vector<std::array<double, N>>* places,
-                const ExtractOptions& options, Contour<N, Real>& contour)
+  LatticeWriter(const SampleSource<N>& source, ReadSamples read, const Grid<N>& grid, Lattice lattice,
+                const LatticeRows& rows, const LatticeGradients<N>* gradients,
+                const std::vector<std::array<double, N>>* places, const ExtractOptions& options,
+                Contour<N, Real>& contour)
       : source_(source),
         read_(read),
         grid_(grid),
         rows_(rows),
         gradients_(gradients),
         places_(places),
-        rows_in_layer_(N == 3 ? grid.axes[1].size() : 1),
+        layers_(layer_axis(lattice)),
+        is_layered_(lattice == Lattice::fcc_in_time && places == nullptr),
         epsilon_(options.epsilon),
         contour_(contour) {
     const Axis& along = grid.axes[0];
@@ -89,24 +107,24 @@ class LatticeWriter {
   }
 
   void write_edge_points(std::size_t r, Scratch& scratch) const {
-    const std::size_t j = r % rows_in_layer_, k = r / rows_in_layer_;
     const std::size_t count = rows_.row(r).first_own - rows_.row(r).first;
     if (count == 0) return;
+    const At row = rows_.at(r);
     for (std::vector<double>* list : {&scratch.from, &scratch.to, &scratch.alphas})
       if (list->size() < count + kMargin) list->resize(count + kMargin);
     if (scratch.at.size() < count + kMargin) scratch.at.resize(count + kMargin);
     // the samples at both ends
-    const std::vector<EdgeKind>& kinds = rows_.pattern(k).edges;
+    const std::vector<EdgeKind>& kinds = rows_.pattern(row).edges;
     std::array<std::size_t, kMostKinds + 1> first{};
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       const std::size_t at = first[kind];
       first[kind + 1] = at;
-      if (!rows_.has_row(j, k, kinds[kind].to)) continue;
+      if (!rows_.has_row(row, kinds[kind].to)) continue;
       std::uint32_t* const list = scratch.at.data() + at;
       const std::size_t more = list_bits(rows_.crossed(r, kind).bits, rows_.words(), list);
       first[kind + 1] += more;
-      read_(row_of(j, k, {}), list, more, scratch.from.data() + at);
-      read_(row_of(j, k, kinds[kind].to), list, more, scratch.to.data() + at);
+      read_(row_of(row, {}), list, more, scratch.from.data() + at);
+      read_(row_of(row, kinds[kind].to), list, more, scratch.to.data() + at);
     }
     alphas_between(scratch.from.data(), scratch.to.data(), count, source_.isovalue(), epsilon_, scratch.alphas.data());
     // vertices
@@ -119,65 +137,66 @@ class LatticeWriter {
       edges.count = more;
       edges.out = contour_.vertices.data() + rows_.row(r).first + at;
       edges.end = contour_.vertices.data() + rows_.row(r).first_own;
-      write_row(edges, sample(0, j, k, {}), sample(0, j, k, kinds[kind].to));
+      write_row(edges, sample(row, {}), sample(row, kinds[kind].to));
+      if (!is_layered_ || kinds[kind].to[N - 1] == 0) continue;
+      const auto [low, high] = times_after(row);
+      for (Vertex& vertex : std::span(edges.out, more)) vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
     }
   }
 
   void write_cells(std::size_t r, Scratch& scratch) const {
-    const std::size_t j = r % rows_in_layer_, k = r / rows_in_layer_;
     const LatticeRows::Row& row = rows_.row(r);
     if (row.active == 0) return;
+    const At at = rows_.at(r);
     Index own = row.first_own;
     auto* simplices = contour_.simplices.data() + row.first_simplex;
-    for (const LatticeCell& cell : rows_.pattern(k).cells) {
-      if (!rows_.applies(j, k, cell)) continue;
+    auto* const end = simplices + row.simplices;
+    const std::vector<LatticeCell>& kinds = rows_.pattern(at).cells;
+    for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
+      if ((row.kinds >> kind & 1u) == 0) continue;
       std::array<EdgeStream, kMostEdges> streams;
-      for (std::size_t e = 0; e < cell.edges.size(); ++e) {
-        const std::size_t of = rows_.row_at(j, k, cell.edges[e].at);
-        const LatticeRows::Crossed crossed = rows_.crossed(of, cell.edges[e].kind);
-        streams[e] = EdgeStream{crossed.bits, crossed.before, rows_.row(of).first, cell.edges[e].at[0]};
-      }
-      const LatticeCellRow cells = rows_.cells_of_row(j, k, cell);
-      if (cell.has_lists) {
-        auto* const end = contour_.simplices.data() + row.first_simplex + row.simplices;
-        simplices = write_simplices(cells, streams.data(), simplices, end);
-        continue;
-      }
-      scratch.active.resize(rows_.words() * kWordBits);
-      const std::size_t count = list_cells(cells, scratch.active.data());
-      for (std::size_t c = 0; c < count; ++c)
-        simplices = write_cell(cell, streams.data(), scratch.active[c], own, simplices);
+      rows_.streams_of_row(r, at, kind, streams.data());
+      const LatticeCellRow cells = rows_.cells_of_row(r, at, kind);
+      Index number = own;
+      simplices = write_simplices(cells, streams.data(), own, simplices, end);
+      if (number != own) write_own_points(at, cells, streams.data(), number, scratch);
     }
   }
 
  private:
-  static constexpr std::size_t kMostEdges = 12;  ///< of a cell
+  static constexpr std::size_t kMostEdges = 30;  ///< of a cell
   static constexpr std::size_t kMostKinds = 16;  ///< of edges of a sample
   static constexpr std::size_t kMargin = LatticePoints<N, Real>::kMargin;
 
-  static Sample sample(std::size_t i, std::size_t j, std::size_t k, const std::array<std::ptrdiff_t, 3>& to) {
+  /// A sample at these differences from the first one of a row; on the grid modulo 2^64 along axis 0.
+  static Sample sample(const At& row, const LatticePlace& to) {
     Sample index{};
-    index[0] = i + static_cast<std::size_t>(to[0]);
-    if constexpr (N == 3) index[1] = j + static_cast<std::size_t>(to[1]);
-    index[N - 1] = k + static_cast<std::size_t>(to[2]);
+    for (std::size_t a = 0; a < N; ++a) index[a] = row[a] + static_cast<std::size_t>(to[a]);
     return index;
   }
 
-  /// The samples at these differences from those of row j of layer k.
-  [[nodiscard]] RowOfSamples row_of(std::size_t j, std::size_t k,
-                                    const std::array<std::ptrdiff_t, 3>& to) const noexcept {
-    const Sample at = sample(0, j, k, to);
+  /// The samples at these differences from those of a row.
+  [[nodiscard]] RowOfSamples row_of(const At& row, const LatticePlace& to) const noexcept {
+    const Sample at = sample(row, to);
     const LayerInMemory layer = source_.layer_in_memory(at[N - 1]);
-    const std::ptrdiff_t rows = N == 3 ? static_cast<std::ptrdiff_t>(at[1]) * source_.strides()[1] : 0;
+    std::ptrdiff_t rows = 0;
+    for (std::size_t a = 1; a + 1 < N; ++a) rows += static_cast<std::ptrdiff_t>(at[a]) * source_.strides()[a];
     return {layer.first + rows * layer.step_bytes + to[0] * layer.sample_bytes, layer.sample_bytes};
   }
 
-  /// Sets the coordinates of the samples from `first` on, which is on the grid modulo 2^64 along axis 0.
+  /// The coordinates of the samples from `first` on, which is on the grid modulo 2^64 along axis 0.
   [[nodiscard]] PlacesInRow<N> places_in_row(const Sample& first) const noexcept {
-    const auto shift = [&](int a) { return first[N - 1] % 2 == 1 ? 0.5 * grid_.axes[a].step() : 0.0; };
+    const bool is_odd = first[static_cast<std::size_t>(layers_)] % 2 == 1;
+    const auto shift = [&](int a) { return is_odd && a < layers_ ? 0.5 * grid_.axes[a].step() : 0.0; };
     PlacesInRow<N> places{shift(0), static_cast<std::ptrdiff_t>(first[0])};
-    for (int a = 1; a < N; ++a) places.others[a] = grid_.axes[a][first[a]] + (a + 1 < N ? shift(a) : 0.0);
+    for (int a = 1; a < N; ++a) places.others[a] = grid_.axes[a][first[a]] + shift(a);
     return places;
+  }
+
+  /// The times of vertices between a row's time and the next one.
+  [[nodiscard]] std::pair<Real, Real> times_after(const At& row) const noexcept {
+    const auto time = [&](const LatticePlace& to) { return lattice_place<N>(grid_, sample(row, to), layers_)[N - 1]; };
+    return inside_of<Real>(time({}), time({0, 0, 0, 1}));
   }
 
   /// Writes the vertices and normals on edges from samples of one row to those of another. `from`, `to`: the ends of
@@ -206,39 +225,65 @@ class LatticeWriter {
     }
   }
 
-  /// Writes the simplices of a cell that may have own vertices, and these, from `own` on; returns the end.
-  auto* write_cell(const LatticeCell& cell, const EdgeStream* streams, const ActiveInRow& active, Index& own,
-                   std::array<Index, N>* simplices) const noexcept {
-    const LatticeCell::Contour& contour = cell.contours[active.signature];
-    std::array<Index, 32> vertices;
-    for (std::uint32_t crossed = contour.crossed; crossed != 0; crossed &= crossed - 1) {
-      const auto e = static_cast<unsigned>(std::countr_zero(crossed));
-      const LatticeRows::Crossed of{streams[e].bits, streams[e].before};
-      vertices[e] = streams[e].first + of[active.at + static_cast<std::size_t>(streams[e].at)];
+  /// A cell with own vertices, and what these are means of.
+  struct OwnCell {
+    const LatticeCell* cell;
+    std::array<Index, kMostEdges> vertices;                ///< by edge
+    std::array<std::array<double, N>, kMostEdges> points;  ///< of these
+    At at;                                                 ///< of the cell's sample
+    std::pair<Real, Real> between;                         ///< times of vertices of prisms
+    std::array<double, N> centre;                          ///< the mean of the corners, if it was added
+  };
+
+  /// Writes the own vertices of the active cells of a row from `number` on.
+  void write_own_points(const At& row, const LatticeCellRow& cells, const EdgeStream* streams, Index number,
+                        Scratch& scratch) const {
+    scratch.active.resize(rows_.words() * kWordBits);
+    const std::size_t count = list_cells(cells, scratch.active.data());
+    OwnCell of;
+    of.cell = cells.cell;
+    of.at = row;
+    if (is_layered_) of.between = times_after(row);
+    for (const ActiveInRow& active : std::span(scratch.active).first(count)) {
+      if (of.cell->contours[active.signature].own == 0) continue;
+      of.at[0] = active.at;
+      for (std::uint32_t rest = of.cell->crossed[active.signature]; rest != 0; rest &= rest - 1) {
+        const auto e = static_cast<unsigned>(std::countr_zero(rest));
+        const LatticeRows::Crossed crossed{streams[e].bits, streams[e].before};
+        of.vertices[e] = streams[e].first + crossed[active.at + static_cast<std::size_t>(streams[e].at)];
+        of.points[e] = widened_point<N>(contour_.vertices[of.vertices[e]]);
+      }
+      const std::vector<LatticeCell::OwnVertex>& vertices = of.cell->own.at(active.signature);
+      if (std::any_of(vertices.begin(), vertices.end(), [](const auto& own) { return own.part != 0.0; }))
+        add_centre(of);
+      for (const LatticeCell::OwnVertex& own : vertices) write_own_point(of, own, number++);
     }
-    for (std::size_t added = 0; added < contour.own; ++added, ++own) {
-      vertices[cell.edges.size() + added] = own;
-      write_own_point(contour.centres[added], vertices.data(), own);
-    }
-    const std::uint8_t* local = contour.vertices.data();
-    for (std::uint32_t s = 0; s < contour.simplices; ++s, ++simplices, local += N)
-      for (std::size_t v = 0; v < N; ++v) (*simplices)[v] = vertices[local[v]];
-    return simplices;
+  }
+  void add_centre(OwnCell& of) const {
+    VertexMean<N, Real> centre;
+    for (const LatticePlace& to : of.cell->corners) centre.add(place_of(sample(of.at, to)));
+    of.centre = centre.mean();
   }
 
-  /// The barycentre of points on edges.
-  void write_own_point(std::uint32_t edges, const Index* vertices, Index number) const {
-    std::array<double, N> sum{}, normal{};
-    double count = 0;
-    for (; edges != 0; edges &= edges - 1, ++count) {
-      const Index v = vertices[std::countr_zero(edges)];
-      for (int a = 0; a < N; ++a) {
-        sum[a] += double{contour_.vertices[v][a]};
-        if (gradients_ != nullptr) normal[a] += double{contour_.normals[v][a]};
-      }
+  void write_own_point(const OwnCell& of, const LatticeCell::OwnVertex& own, Index number) const {
+    VertexMean<N, Real> mean;
+    for (const std::uint8_t e : own.edges) {
+      mean.add(of.points[e]);
+      if (gradients_ != nullptr) mean.add_normal(contour_.normals[of.vertices[e]]);
     }
-    for (int a = 0; a < N; ++a) contour_.vertices[number][a] = static_cast<Real>(sum[a] / count);
-    if (gradients_ != nullptr) contour_.normals[number] = LatticeGradients<N>::template unit<Real>(normal);
+    for (std::uint32_t rest = own.corners; rest != 0; rest &= rest - 1) {
+      const LatticePlace& to = of.cell->corners[static_cast<std::size_t>(std::countr_zero(rest))];
+      const Sample corner = sample(of.at, to);
+      mean.add(place_of(corner));
+      if (gradients_ != nullptr) mean.add_normal(gradients_->template normal_at<Real>(corner));
+    }
+    Vertex& vertex = contour_.vertices[number];
+    vertex = own.part == 0.0 ? mean.place(false) : part_of_way<Real>(mean.mean(), of.centre, own.part);
+    if (is_layered_ && own.is_between) vertex[N - 1] = std::clamp(vertex[N - 1], of.between.first, of.between.second);
+    if (gradients_ != nullptr) contour_.normals[number] = LatticeGradients<N>::template unit<Real>(mean.normal());
+  }
+  [[nodiscard]] std::array<double, N> place_of(const Sample& sample) const {
+    return places_ != nullptr ? (*places_)[number_of<N>(grid_, sample)] : lattice_place<N>(grid_, sample, layers_);
   }
 
   const SampleSource<N>& source_;
@@ -247,7 +292,8 @@ class LatticeWriter {
   const LatticeRows& rows_;
   const LatticeGradients<N>* gradients_;
   const std::vector<std::array<double, N>>* places_;
-  std::size_t rows_in_layer_;
+  int layers_;       ///< the axis of the layers
+  bool is_layered_;  ///< whether cells are between two layers of the last axis
   double epsilon_;
   std::vector<double> along_;  ///< coordinates along the row; empty: uniform
   Contour<N, Real>& contour_;
@@ -261,13 +307,17 @@ bool extract_by_rows(SampleSource<N>& source, ReadSamples read, const Grid<N>& g
                      Extraction<N, Real>& result) {
   const Progress& progress = options.work.progress;
   const unsigned threads = options.work.threads;
-  const std::array<LayerPattern, 2> patterns = make_patterns<N>(lattice, grid, options);
-  const auto sizes = grid.sizes();
-  LatticeRows rows({sizes[0], N == 3 ? sizes[1] : 1, sizes[N - 1]}, patterns);
+  LatticePatterns patterns = make_patterns<N>(lattice, grid, options);
+  LatticeRows rows(lattice, four_sizes(grid), patterns);
   Stopwatch watch;
   if (rows.template classify<N>(source, {threads, part_of(progress, 0.0, 0.2)})) return false;
   watch.add_to(result.stats.classify_seconds);
-  rows.count({threads, part_of(progress, 0.2, 0.5)});
+  if constexpr (N == 4) {
+    OccurringSignatures signatures(patterns);
+    rows.find_signatures(signatures, {threads, part_of(progress, 0.2, 0.3)});
+    add_contours(patterns, signatures, options.ambiguity, {threads, part_of(progress, 0.3, 0.35)});
+  }
+  rows.count({threads, part_of(progress, N == 4 ? 0.35 : 0.2, 0.5)});
   result.stats.tiles = rows.cells();
   result.stats.active_tiles = rows.active_cells();
   watch.add_to(result.stats.find_seconds);
@@ -278,8 +328,8 @@ bool extract_by_rows(SampleSource<N>& source, ReadSamples read, const Grid<N>& g
     gradients.emplace(source, grid, lattice, options.direction);
     result.contour.normals.resize(rows.vertices());
   }
-  const LatticeWriter<N, Real> writer(source, read, grid, rows, gradients ? &*gradients : nullptr, places, options,
-                                      result.contour);
+  const LatticeWriter<N, Real> writer(source, read, grid, lattice, rows, gradients ? &*gradients : nullptr, places,
+                                      options, result.contour);
   for_each_part(rows.row_count(), threads, part_of(progress, 0.5, 0.75), [&](std::size_t from, std::size_t to) {
     typename LatticeWriter<N, Real>::Scratch scratch;
     for (std::size_t r = from; r < to; ++r) writer.write_edge_points(r, scratch);
@@ -301,17 +351,16 @@ Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice
   check_lattice_arguments<N>(image.grid(), lattice, isovalue, options, periods);
   const Grid<N>& grid = image.grid();
   Extraction<N, Real> result;
-  if constexpr (N < 4)
-    if (periodic_axes<N>(periods) == 0 && !options.close && has_rows(lattice, options.ambiguity) &&
-        is_in_range<Real>(grid)) {
-      check_grid(grid, lattice, N - 1);
-      (void)count_samples(grid, "a lattice");
-      ImageSource<T, N> samples(image, isovalue, options.epsilon);
-      if (extract_by_rows<N, Real>(samples, &read_samples<T>, grid, lattice, options, places, result)) {
-        describe(grid, options, result.contour);
-        return result;
-      }
+  if (periodic_axes<N>(periods) == 0 && !options.close && has_rows(lattice, options) && is_in_range<Real>(grid) &&
+      (lattice != Lattice::fcc_in_time || has_prisms(grid))) {
+    check_grid(grid, lattice, layer_axis(lattice));
+    (void)count_samples(grid, "a lattice");
+    ImageSource<T, N> samples(image, isovalue, options.epsilon);
+    if (extract_by_rows<N, Real>(samples, &read_samples<T>, grid, lattice, options, places, result)) {
+      describe(grid, options, result.contour);
+      return result;
     }
+  }
   const StoredLattice<T, N> stored(image, lattice, isovalue, options, periods);
   if (places != nullptr)
     return extract_with_stats<Real>(ComplexAccess::at_places<N>(stored.complex(), *places), isovalue, options);

@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "complex/point_gradients.hpp"
 #include "image/sample_source.hpp"
 #include "lattice/lattice_cells.hpp"
 #include "lattice/lattice_grid.hpp"
@@ -42,13 +43,16 @@ class LatticeGradients {
     for (int i = 0; i < N; ++i) sum[i] = sign_ * ((1.0 - alpha) * a[i] + alpha * b[i]);
     return unit<Real>(sum);
   }
+  /// The unit normal at a sample.
+  template <class Real>
+  [[nodiscard]] std::array<Real, N> normal_at(const Sample& index) const {
+    Gradient gradient = at(index);
+    for (double& x : gradient) x *= sign_;
+    return unit<Real>(gradient);
+  }
   template <class Real>
   static std::array<Real, N> unit(const Gradient& vector) {
-    double length = 0.0;
-    for (const double x : vector) length = std::hypot(length, x);
-    std::array<Real, N> result{};
-    for (int i = 0; i < N && length > 0.0; ++i) result[i] = static_cast<Real>(vector[i] / length);
-    return result;
+    return unit_of<Real>(vector);
   }
 
   /// The gradient at a sample, in the world.

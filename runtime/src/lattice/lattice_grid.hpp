@@ -60,7 +60,9 @@ template <int N>
 std::array<double, N> lattice_place(const Grid<N>& grid, const std::array<std::size_t, N>& index, int layers) {
   std::array<double, N> x;
   for (int a = 0; a < N; ++a) x[a] = grid.axes[a][index[a]];
-  for (int a = 0; a < layers && index[layers] % 2 == 1; ++a) x[a] += 0.5 * grid.axes[a].step();
+  const bool is_odd = index[static_cast<std::size_t>(layers)] % 2 == 1;
+  for (int a = 0; a < N; ++a)
+    if (is_odd && a < layers) x[a] += 0.5 * grid.axes[a].step();
   return place_in_world<N>(grid, x);
 }
 

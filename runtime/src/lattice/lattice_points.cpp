@@ -78,8 +78,10 @@ HWY_INLINE void points(const LatticePoints<N, Real>& edges) {
     const auto store = [&](Real* out) HWY_ATTR {
       if constexpr (N == 2)
         hn::StoreInterleaved2(x[0], x[1], of_points, out);
-      else
+      else if constexpr (N == 3)
         hn::StoreInterleaved3(x[0], x[1], x[2], of_points, out);
+      else
+        hn::StoreInterleaved4(x[0], x[1], x[2], x[3], of_points, out);
     };
     auto* const out = edges.out + i;
     if (edges.end - out >= static_cast<std::ptrdiff_t>(kLanes)) {
@@ -95,8 +97,10 @@ HWY_INLINE void points(const LatticePoints<N, Real>& edges) {
 // Highway's dispatch tables cannot hold templates.
 void points2f(const LatticePoints<2, float>& edges) { points(edges); }
 void points3f(const LatticePoints<3, float>& edges) { points(edges); }
+void points4f(const LatticePoints<4, float>& edges) { points(edges); }
 void points2d(const LatticePoints<2, double>& edges) { points(edges); }
 void points3d(const LatticePoints<3, double>& edges) { points(edges); }
+void points4d(const LatticePoints<4, double>& edges) { points(edges); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace tegl::detail
@@ -114,8 +118,10 @@ namespace tegl::detail {
   }
 TEGL_DISPATCH(2, float, points2f)
 TEGL_DISPATCH(3, float, points3f)
+TEGL_DISPATCH(4, float, points4f)
 TEGL_DISPATCH(2, double, points2d)
 TEGL_DISPATCH(3, double, points3d)
+TEGL_DISPATCH(4, double, points4d)
 #undef TEGL_DISPATCH
 
 }  // namespace tegl::detail

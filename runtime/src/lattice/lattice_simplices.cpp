@@ -21,23 +21,21 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The corners of 64 cells, and those cells that are active.
+/// The corners of 64 cells, at most `Corners` of each, and those cells that are active.
+template <std::size_t Corners>
 class CellWord {
  public:
   HWY_INLINE explicit CellWord(const LatticeCellRow& row) : row_(row), corners_(row.cell->corners.size()) {
-    for (std::size_t c = 0; c < corners_; ++c) {
-      const std::ptrdiff_t along = row.cell->corners[c][0];
-      from_[c] = row.corners[c] + (along < 0 ? -1 : 0);
-      shift_[c] = along < 0 ? kWordBits - 1 : static_cast<std::size_t>(along);
-    }
+    for (std::size_t c = 0; c < corners_; ++c) from_[c] = row.bits + row.corners[c];
   }
 
   /// Reads the corners of the cells from word w on. Returns the active cells.
   HWY_INLINE Word read(std::size_t w) {
+    const std::uint8_t* const shifts = row_.cell->shifts.data();
     Word any = 0, all = ~Word{0};
     for (std::size_t c = 0; c < corners_; ++c) {
       const Word* const from = from_[c] + w;
-      bits_[c] = from[0] >> shift_[c] | from[1] << 1 << (kWordBits - 1 - shift_[c]);
+      bits_[c] = from[0] >> shifts[c] | from[1] << 1 << (kWordBits - 1 - shifts[c]);
       any |= bits_[c];
       all &= bits_[c];
     }
@@ -46,11 +44,11 @@ class CellWord {
 
   /// The signature of one of the cells.
   HWY_INLINE unsigned signature(unsigned bit) const {
-    const hn::CappedTag<Word, LatticeCellRow::kMostCorners> d;
+    const hn::CappedTag<Word, Corners> d;
     constexpr std::size_t kLanes = hn::MaxLanes(d);
     const auto one = hn::Set(d, Word{1} << bit);
     unsigned signature = 0;
-    for (std::size_t c = 0; c < LatticeCellRow::kMostCorners; c += kLanes) {
+    for (std::size_t c = 0; c < Corners; c += kLanes) {
       std::uint8_t bits[8] = {};
       hn::StoreMaskBits(d, hn::TestBit(hn::Load(d, bits_.data() + c), one), bits);
       signature |= unsigned{bits[0]} << c;
@@ -70,41 +68,68 @@ class CellWord {
 
   const LatticeCellRow& row_;
   std::size_t corners_;
-  std::array<const Word*, LatticeCellRow::kMostCorners> from_;
-  std::array<std::size_t, LatticeCellRow::kMostCorners> shift_;
-  alignas(64) std::array<Word, LatticeCellRow::kMostCorners> bits_{};  // 0 for corners that the cell does not have
+  std::array<const Word*, Corners> from_;
+  alignas(64) std::array<Word, Corners> bits_{};  // 0 for corners that the cell does not have
 };
 
-std::size_t list_active(const LatticeCellRow& row, ActiveInRow* out) {
-  CellWord cells(row);
-  std::size_t count = 0;
-  for (std::size_t w = 0; w < row.words; ++w)
-    for (Word rest = cells.read(w); rest != 0; rest &= rest - 1) {
+/// Calls visit(word, signature) for the active cells of a row in order, and counts them.
+template <std::size_t Corners, class Visit>
+HWY_INLINE std::uint32_t for_each_active(const LatticeCellRow& row, const Visit& visit) {
+  CellWord<Corners> cells(row);
+  std::uint32_t count = 0;
+  for (std::size_t w = 0; w < row.words; ++w) {
+    const Word active = cells.read(w);
+    if (active == 0) continue;
+    count += static_cast<std::uint32_t>(std::popcount(active));
+    for (Word rest = active; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
-      out[count++] = {static_cast<std::uint32_t>(w * kWordBits + bit), cells.signature(bit)};
+      visit(w * kWordBits + bit, cells.signature(bit));
     }
+  }
   return count;
+}
+template <class Visit>
+HWY_INLINE std::uint32_t for_each_active(const LatticeCellRow& row, const Visit& visit) {
+  if (row.cell->corners.size() <= 8) return for_each_active<8>(row, visit);
+  return for_each_active<LatticeCellRow::kMostCorners>(row, visit);
+}
+
+std::size_t list_active(const LatticeCellRow& row, ActiveInRow* out) {
+  return for_each_active(row, [&](std::size_t at, unsigned signature) HWY_ATTR {
+    *out++ = {static_cast<std::uint32_t>(at), signature};
+  });
+}
+
+std::uint32_t mark_active(const LatticeCellRow& row, std::atomic<bool>* occurs) {
+  return for_each_active(
+      row, [&](std::size_t, unsigned signature) HWY_ATTR { occurs[signature].store(true, std::memory_order_relaxed); });
 }
 
 LatticeCellCount count_active(const LatticeCellRow& row) {
   LatticeCellCount count;
-  CellWord cells(row);
-  const std::uint8_t* const sizes = row.cell->sizes.data();
-  for (std::size_t w = 0; w < row.words; ++w) {
-    const Word active = cells.read(w);
-    if (active == 0) continue;
-    count.active += static_cast<std::uint32_t>(std::popcount(active));
-    for (Word rest = active; rest != 0; rest &= rest - 1)
-      count.simplices += sizes[cells.signature(static_cast<unsigned>(std::countr_zero(rest)))];
-  }
+  const LatticeCell::Contour* const contours = row.cell->contours.data();
+  count.active = for_each_active(row, [&](std::size_t, unsigned signature) HWY_ATTR {
+    count.simplices += contours[signature].simplices;
+    count.own += contours[signature].own;
+  });
   return count;
 }
 
-/// Numbers of the vertices of 64 cells on their edges, as many as Lanes.
+/// Numbers of the vertices of 64 cells: on their edges, then own vertices, as many as Lanes.
 template <std::size_t Lanes>
 class EdgeWord {
  public:
-  HWY_INLINE EdgeWord(const EdgeStream* streams, std::size_t edges) : streams_(streams), edges_(edges) {}
+  /// `own`: number of the first own vertex.
+  HWY_INLINE EdgeWord(const EdgeStream* streams, std::size_t edges, Index own) : streams_(streams), edges_(edges) {
+    set_own(own);
+  }
+
+  /// The number of own vertices of a cell that have a lane.
+  [[nodiscard]] HWY_INLINE std::size_t own_lanes() const { return Lanes - edges_; }
+  /// `own`: number of the first own vertex of the next cell.
+  HWY_INLINE void set_own(Index own) {
+    for (std::size_t v = edges_; v < Lanes; ++v) first_[v] = Word{own} + (v - edges_);
+  }
 
   /// Reads the crossings of the cells from word w on.
   HWY_INLINE void read(std::size_t w) {
@@ -126,22 +151,22 @@ class EdgeWord {
   }
 
 #if HWY_TARGET <= HWY_AVX2
-  using Numbers = hn::Vec<hn::CappedTag<Index, Lanes>>;
-  /// The number of each edge's vertex of one of the cells, if the edge is crossed.
-  HWY_INLINE Numbers numbers(unsigned bit) const {
-    const hn::CappedTag<Word, Lanes> d;
+  /// The numbers of `Count` vertices of one of the cells from `from` on; of edges, if these are crossed.
+  template <std::size_t Count>
+  HWY_INLINE hn::Vec<hn::CappedTag<Index, Count>> numbers(unsigned bit, std::size_t from = 0) const {
+    const hn::CappedTag<Word, Count> d;
     const hn::Rebind<Index, decltype(d)> part;
-    const hn::CappedTag<Index, Lanes> whole;
+    const hn::CappedTag<Index, Count> whole;
     constexpr std::size_t kPart = hn::MaxLanes(d);
     const auto below = hn::Set(d, (Word{1} << bit) - 1);
     const auto of = [&](std::size_t e) HWY_ATTR {
       const auto count = hn::PopulationCount(hn::And(hn::Load(d, bits_.data() + e), below));
       return hn::TruncateTo(part, hn::Add(count, hn::Load(d, first_.data() + e)));
     };
-    if constexpr (kPart == Lanes)
-      return of(0);
+    if constexpr (kPart == Count)
+      return of(from);
     else
-      return hn::Combine(whole, of(kPart), of(0));
+      return hn::Combine(whole, of(from + kPart), of(from));
   }
 #endif
 
@@ -157,41 +182,67 @@ class EdgeWord {
 
 #if HWY_TARGET <= HWY_AVX2
 
-/// Whether the numbers of all vertices are in one register.
+/// The most numbers of vertices in a register.
 template <std::size_t Lanes>
-inline constexpr bool kInRegister = hn::MaxLanes(hn::CappedTag<Index, Lanes>()) == Lanes;
+inline constexpr std::size_t kInRegister = hn::MaxLanes(hn::CappedTag<Index, Lanes>());
+/// Whether the numbers of all vertices are in one register, or in two of the largest.
+template <std::size_t Lanes>
+inline constexpr bool kInRegisters = kInRegister<Lanes> == Lanes || (kInRegister<Lanes> == 16 && Lanes == 32);
 
 /// Writes the simplices of a cell by a list of its vertices, a whole register at a time.
 template <std::size_t N, std::size_t Lanes>
-HWY_INLINE void put_by_register(const EdgeWord<Lanes>& edges, unsigned bit, const std::uint8_t* list, std::size_t count,
-                                Index* out, const Index* end) {
-  const hn::CappedTag<Index, Lanes> d;
+HWY_INLINE void put_by_register(const EdgeWord<Lanes>& vertices, unsigned bit, const std::uint8_t* list,
+                                std::size_t count, Index* out, const Index* end) {
+  constexpr std::size_t kLanes = kInRegister<Lanes>, kAtOnce = kLanes / N * N;
+  const hn::CappedTag<Index, kLanes> d;
   const hn::Rebind<std::uint8_t, decltype(d)> bytes;
-  constexpr std::size_t kAtOnce = Lanes / N * N;
-  const auto numbers = edges.numbers(bit);
+  const auto numbers = vertices.template numbers<kLanes>(bit);
+  const auto others = vertices.template numbers<kLanes>(bit, Lanes - kLanes);
   for (std::size_t done = 0; done < N * count; done += kAtOnce) {
-    const auto corners = hn::IndicesFromVec(d, hn::PromoteTo(d, hn::LoadU(bytes, list + done)));
-    const auto some = hn::TableLookupLanes(numbers, corners);
-    if (HWY_LIKELY(end - (out + done) >= static_cast<std::ptrdiff_t>(Lanes))) {
+    const auto corners = hn::PromoteTo(d, hn::LoadU(bytes, list + done));
+    auto some = numbers;
+    if constexpr (kLanes == Lanes) {
+      some = hn::TableLookupLanes(numbers, hn::IndicesFromVec(d, corners));
+    } else {
+      const auto at = hn::IndicesFromVec(d, hn::And(corners, hn::Set(d, Index{kLanes - 1})));
+      some = hn::IfThenElse(hn::Lt(corners, hn::Set(d, Index{kLanes})), hn::TableLookupLanes(numbers, at),
+                            hn::TableLookupLanes(others, at));
+    }
+    if (HWY_LIKELY(end - (out + done) >= static_cast<std::ptrdiff_t>(kLanes))) {
       hn::StoreU(some, d, out + done);
       continue;
     }
-    alignas(64) std::array<Index, Lanes> last;
+    alignas(64) std::array<Index, kLanes> last;
     hn::Store(some, d, last.data());
-    std::copy_n(last.begin(), std::min<std::ptrdiff_t>(end - (out + done), Lanes), out + done);
+    std::copy_n(last.begin(), std::min<std::ptrdiff_t>(end - (out + done), kLanes), out + done);
   }
 }
 
 #endif
 
+/// Writes the simplices of a cell, one after the other. `crossed`: its edges; `own`: of its own vertices the first one.
 template <std::size_t N, std::size_t Lanes>
-HWY_INLINE std::array<Index, N>* write_of(const LatticeCellRow& row, const EdgeStream* streams,
+HWY_INLINE void put_one_by_one(const EdgeWord<Lanes>& edges, unsigned bit, const LatticeCell& cell,
+                               std::uint32_t crossed, const LatticeCell::Contour& contour, Index own,
+                               std::array<Index, N>* out) {
+  std::array<Index, 256> vertices;
+  for (; crossed != 0; crossed &= crossed - 1) {
+    const auto e = static_cast<unsigned>(std::countr_zero(crossed));
+    vertices[e] = edges.number(e, bit);
+  }
+  for (Index j = 0; j < contour.own; ++j) vertices[cell.edges.size() + j] = own + j;
+  const std::uint8_t* list = cell.lists.data() + contour.first;
+  for (std::size_t s = 0; s < contour.simplices; ++s, ++out, list += N)
+    for (std::size_t v = 0; v < N; ++v) (*out)[v] = vertices[list[v]];
+}
+
+template <std::size_t N, std::size_t Lanes, std::size_t Corners>
+HWY_INLINE std::array<Index, N>* write_of(const LatticeCellRow& row, const EdgeStream* streams, Index& own,
                                           std::array<Index, N>* out, [[maybe_unused]] std::array<Index, N>* end) {
   const LatticeCell& cell = *row.cell;
-  const std::uint8_t* const sizes = cell.sizes.data();
-  const std::uint8_t* const lists = cell.lists.data();
-  CellWord cells(row);
-  EdgeWord<Lanes> edges(streams, cell.edges.size());
+  const LatticeCell::Contour* const contours = cell.contours.data();
+  CellWord<Corners> cells(row);
+  EdgeWord<Lanes> edges(streams, cell.edges.size(), own);
   for (std::size_t w = 0; w < row.words; ++w) {
     Word rest = cells.read(w);
     if (rest == 0) continue;
@@ -199,41 +250,49 @@ HWY_INLINE std::array<Index, N>* write_of(const LatticeCellRow& row, const EdgeS
     for (; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
       const unsigned signature = cells.signature(bit);
-      const std::uint8_t* const list = lists + signature * LatticeCell::kList;
-      const std::size_t count = sizes[signature];
+      const LatticeCell::Contour& contour = contours[signature];
+      const auto put = [&]() HWY_ATTR {
 #if HWY_TARGET <= HWY_AVX2
-      if constexpr (kInRegister<Lanes>) {
-        put_by_register<N, Lanes>(edges, bit, list, count, out->data(), end->data());
-        out += count;
-        continue;
-      }
+        if constexpr (kInRegisters<Lanes>)
+          if (HWY_LIKELY(contour.own <= edges.own_lanes()))
+            return put_by_register<N, Lanes>(edges, bit, cell.lists.data() + contour.first, contour.simplices,
+                                             out->data(), end->data());
 #endif
-      std::array<Index, Lanes> vertices;
-      for (std::uint32_t crossed = cell.contours[signature].crossed; crossed != 0; crossed &= crossed - 1) {
-        const auto e = static_cast<unsigned>(std::countr_zero(crossed));
-        vertices[e] = edges.number(e, bit);
-      }
-      for (std::size_t s = 0; s < count; ++s, ++out)
-        for (std::size_t v = 0; v < N; ++v) (*out)[v] = vertices[list[N * s + v]];
+        put_one_by_one<N, Lanes>(edges, bit, cell, cell.crossed[signature], contour, own, out);
+      };
+      put();
+      out += contour.simplices;
+      if (contour.own == 0) continue;
+      own += contour.own;
+      edges.set_own(own);
     }
   }
   return out;
 }
 
 template <std::size_t N>
-HWY_INLINE std::array<Index, N>* write(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, N>* out,
-                                       std::array<Index, N>* end) {
-  if (row.cell->edges.size() <= 8) return write_of<N, 8>(row, streams, out, end);
-  return write_of<N, 16>(row, streams, out, end);
+HWY_INLINE std::array<Index, N>* write(const LatticeCellRow& row, const EdgeStream* streams, Index& own,
+                                       std::array<Index, N>* out, std::array<Index, N>* end) {
+  if constexpr (N < 4) {
+    if (row.cell->edges.size() <= 8) return write_of<N, 8, 8>(row, streams, own, out, end);
+    return write_of<N, 16, 8>(row, streams, own, out, end);
+  } else {
+    if (row.cell->corners.size() <= 8) return write_of<N, 32, 8>(row, streams, own, out, end);
+    return write_of<N, 32, LatticeCellRow::kMostCorners>(row, streams, own, out, end);
+  }
 }
 
-std::array<Index, 2>* write2(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, 2>* out,
-                             std::array<Index, 2>* end) {
-  return write(row, streams, out, end);
+std::array<Index, 2>* write2(const LatticeCellRow& row, const EdgeStream* streams, Index& own,
+                             std::array<Index, 2>* out, std::array<Index, 2>* end) {
+  return write(row, streams, own, out, end);
 }
-std::array<Index, 3>* write3(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, 3>* out,
-                             std::array<Index, 3>* end) {
-  return write(row, streams, out, end);
+std::array<Index, 3>* write3(const LatticeCellRow& row, const EdgeStream* streams, Index& own,
+                             std::array<Index, 3>* out, std::array<Index, 3>* end) {
+  return write(row, streams, own, out, end);
+}
+std::array<Index, 4>* write4(const LatticeCellRow& row, const EdgeStream* streams, Index& own,
+                             std::array<Index, 4>* out, std::array<Index, 4>* end) {
+  return write(row, streams, own, out, end);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -249,19 +308,24 @@ std::size_t list_cells(const LatticeCellRow& row, ActiveInRow* out) noexcept {
   return HWY_DYNAMIC_DISPATCH(list_active)(row, out);
 }
 
+HWY_EXPORT(mark_active);
+std::uint32_t mark_signatures(const LatticeCellRow& row, std::atomic<bool>* occurs) noexcept {
+  return HWY_DYNAMIC_DISPATCH(mark_active)(row, occurs);
+}
+
 HWY_EXPORT(count_active);
 LatticeCellCount count_cells(const LatticeCellRow& row) noexcept { return HWY_DYNAMIC_DISPATCH(count_active)(row); }
 
-HWY_EXPORT(write2);
-std::array<Index, 2>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, 2>* out,
-                                      std::array<Index, 2>* end) noexcept {
-  return HWY_DYNAMIC_DISPATCH(write2)(row, streams, out, end);
-}
-HWY_EXPORT(write3);
-std::array<Index, 3>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, 3>* out,
-                                      std::array<Index, 3>* end) noexcept {
-  return HWY_DYNAMIC_DISPATCH(write3)(row, streams, out, end);
-}
+#define TEGL_DISPATCH(N, name)                                                                            \
+  HWY_EXPORT(name);                                                                                       \
+  std::array<Index, N>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, Index& own, \
+                                        std::array<Index, N>* out, std::array<Index, N>* end) noexcept {  \
+    return HWY_DYNAMIC_DISPATCH(name)(row, streams, own, out, end);                                       \
+  }
+TEGL_DISPATCH(2, write2)
+TEGL_DISPATCH(3, write3)
+TEGL_DISPATCH(4, write4)
+#undef TEGL_DISPATCH
 
 }  // namespace tegl::detail
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 
@@ -19,17 +20,20 @@ namespace tegl::detail {
 
 /// The cells of one kind of a row of samples.
 struct LatticeCellRow {
-  static constexpr std::size_t kMostCorners = 8;
+  static constexpr std::size_t kMostCorners = 16;
   const LatticeCell* cell;
-  /// By corner: the row of bits in which it is. The words before the first and after the last one are 0.
-  std::array<const Word*, kMostCorners> corners;
+  const Word*
+      bits;  ///< the first word of the cells' samples; before the first word of a row and after its last one is 0
+  /// By corner: the words from `bits` to the first one with the corners of 64 cells, of which LatticeCell::shifts bits
+  /// belong to cells before.
+  const std::ptrdiff_t* corners;
   std::size_t words;
   std::ptrdiff_t first, end;  ///< the samples that have the cell: from `first` on, before `end`
 };
 
-/// How many cells of a row are active, and how many simplices they have.
+/// How many cells of a row are active, and how many simplices and own vertices they have.
 struct LatticeCellCount {
-  std::uint32_t active = 0, simplices = 0;
+  std::uint32_t active = 0, simplices = 0, own = 0;
 };
 
 /// The stream of bits in which the numbers of vertices on one edge of a cell are found.
@@ -49,14 +53,19 @@ struct ActiveInRow {
 /// Lists the active cells in order: at most 64 for each word. Returns their number.
 std::size_t list_cells(const LatticeCellRow& row, ActiveInRow* out) noexcept;
 
-/// Counts active cells, which have lists (LatticeCell::has_lists).
+/// Marks the signatures of active cells, and counts these. `occurs`: by signature.
+std::uint32_t mark_signatures(const LatticeCellRow& row, std::atomic<bool>* occurs) noexcept;
+
+/// Counts active cells, whose contours are known.
 LatticeCellCount count_cells(const LatticeCellRow& row) noexcept;
 
-/// Writes the simplices of active cells, which have lists, from `out` on; returns the end. `streams`: by edge. Up to 15
-/// numbers after the end are overwritten, but none from `end` on.
-std::array<Index, 2>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, 2>* out,
-                                      std::array<Index, 2>* end) noexcept;
-std::array<Index, 3>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, std::array<Index, 3>* out,
-                                      std::array<Index, 3>* end) noexcept;
+/// Writes the simplices of active cells from `out` on; returns the end. `streams`: by edge. `own`: number of the first
+/// own vertex; afterwards of the next one. Up to 15 numbers after the end are overwritten, but none from `end` on.
+std::array<Index, 2>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, Index& own,
+                                      std::array<Index, 2>* out, std::array<Index, 2>* end) noexcept;
+std::array<Index, 3>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, Index& own,
+                                      std::array<Index, 3>* out, std::array<Index, 3>* end) noexcept;
+std::array<Index, 4>* write_simplices(const LatticeCellRow& row, const EdgeStream* streams, Index& own,
+                                      std::array<Index, 4>* out, std::array<Index, 4>* end) noexcept;
 
 }  // namespace tegl::detail

@@ -97,10 +97,8 @@ class LatticeStream {
   using Ends = typename CellParts<Real, N>::Ends;
 
   template <Value T>
-  LatticeRows rows_of(const Image<T, N>& window, const std::array<LayerPattern, 2>& patterns,
-                      const ExtractOptions& options) const {
-    const auto sizes = window.grid().sizes();
-    LatticeRows rows({sizes[0], rows_in_layer(), sizes[N - 1]}, patterns);
+  LatticeRows rows_of(const Image<T, N>& window, const LatticePatterns& patterns, const ExtractOptions& options) const {
+    LatticeRows rows(lattice_, four_sizes(window.grid()), patterns);
     const ImageSource<T, N> samples(window, isovalue_, options.epsilon);
     (void)rows.template classify<N>(samples, {options.work.threads});
     rows.count({options.work.threads});
@@ -154,7 +152,7 @@ class LatticeStream {
     add_simplices(contour, rows, first_row(part, part.first - (part.first == 0 ? 0 : kLag)),
                   first_row(part, simplices_to));
     for (std::size_t r = from; r < to; ++r) {
-      stats_.tiles += rows.row(r).cells;
+      stats_.tiles += rows.cells(r);
       stats_.active_tiles += rows.row(r).active;
     }
   }
@@ -202,15 +200,16 @@ class LatticeStream {
   }
   /// Tells the parts to come the vertices on the edges of a row that have numbers.
   void know_edges(const LatticeRows& rows, std::size_t r, const PartLayers& part) {
-    const std::size_t layer = r / rows_in_layer(), samples = grid_.axes[0].size();
-    const auto& kinds = rows.pattern(layer).edges;
+    const std::size_t samples = grid_.axes[0].size();
+    const auto& kinds = rows.pattern(rows.at(r)).edges;
     const auto start =
         static_cast<std::ptrdiff_t>((static_cast<std::size_t>(part.begin) * rows_in_layer() + r) * samples);
     Index v = rows.row(r).first;
+    if (v == rows.row(r).first_own) return;
     for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
       const auto& to = kinds[kind].to;
       const std::ptrdiff_t step =
-          (to[2] * static_cast<std::ptrdiff_t>(rows_in_layer()) + to[1]) * static_cast<std::ptrdiff_t>(samples) + to[0];
+          static_cast<std::ptrdiff_t>(rows.steps(to)) * static_cast<std::ptrdiff_t>(samples) + to[0];
       for (std::size_t w = 0; w < rows.words(); ++w)
         for (Word rest = rows.crossed(r, kind).bits[w]; rest != 0; rest &= rest - 1, ++v) {
           if (numbers_[v] == ~std::uint64_t{0}) continue;
@@ -306,7 +305,7 @@ std::vector<ExtractedSize> stream_layers(LayerReader<T, N>& layers, Lattice latt
     if (contour.sink == nullptr) refuse("a contour without a sink; expected one each");
   const Grid<N> grid = layers.grid();
   check_stream<Real>(grid, lattice, options, periods);
-  bool by_rows = has_rows(lattice, options.ambiguity) && !options.close && periods == AxisPeriods<N>{};
+  bool by_rows = N < 4 && has_rows(lattice, options) && !options.close && periods == AxisPeriods<N>{};
   std::deque<LatticeStream<Real, N>> streams;  // not movable
   for (const auto& contour : contours) streams.emplace_back(contour, grid, lattice, periods, options, by_rows);
   if (contours.empty()) return {};
