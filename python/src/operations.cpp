@@ -8,6 +8,7 @@
 #include "incidence.hpp"
 #include "tegl/check.hpp"
 #include "tegl/components.hpp"
+#include "tegl/hyperplane.hpp"
 #include "tegl/intersections.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/merge.hpp"
@@ -41,6 +42,18 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
         },
         contour.contour);
   });
+}
+
+/// The origin and the axes, in rows, of the frame of cuts with this normal.
+py::tuple frame_of_cut(const AnyContour& contour, const Numbers& normal, double offset) {
+  return std::visit(
+      [&]<int N, class Real>(const Contour<N, Real>&) -> py::tuple {
+        const HyperplaneFrame<N> frame = frame_of(Hyperplane<N>{to_array<N>("the normal", normal), offset});
+        std::vector<Numbers> axes;
+        for (const Vector<N>& axis : frame.axes) axes.emplace_back(axis.begin(), axis.end());
+        return py::make_tuple(Numbers(frame.origin.begin(), frame.origin.end()), axes);
+      },
+      contour.contour);
 }
 
 py::dict check_any(const AnyContour& contour, const AnyIncidence* incidence, unsigned threads,
@@ -372,6 +385,7 @@ void sample_any(AnyContour& contour, const AnyImage& image, const std::string& n
 void bind_operations(py::module_& m) {
   m.def("slice_stack", &cuts, py::arg("contour"), py::arg("normal"), py::arg("offsets"), py::arg("threads"),
         py::arg("progress"), doc::slice_stack);
+  m.def("frame_of", &frame_of_cut, py::arg("contour"), py::arg("normal"), py::arg("offset"), doc::frame_of);
   m.def("check", &check_any, py::arg("contour"), py::arg("incidence"), py::arg("threads"), py::arg("progress"),
         doc::check_2);
   m.def("find_intersections", &intersections_any, py::arg("contour"), py::arg("tile"), py::arg("origin"),

@@ -20,23 +20,25 @@ from ._curved import CurvedGrid
 from ._facets import FacetLevel, FacetReport, Facets
 from ._fields import fields, sample
 from ._filter import filter, most_stable_scale, scale_space
-from ._functions import check, components, elements, intersections, measure, merge_vertices, simplify, track
+from ._functions import check, components, elements, frame_of, intersections, measure, merge_vertices, simplify, track
 from ._image import ContourSize, Image, contour, contour_facets, count, read, slice
 from ._incidence import Incidence
 from ._index import Index, PickReport
 from ._mesh import (Mesh, MeshIndex, contour_mesh, contour_mesh_facets, contour_points, count_mesh,
                     read_mesh)
-from ._results import (Component, CutMeasures, Elements, ElementSum, Intersections, Measures, MergeReport, MeshReport,
-                       SimplifyStats)
+from ._results import (Component, CutMeasures, Elements, ElementSum, Frame, Intersections, Measures, MergeReport,
+                       MeshReport, SimplifyStats)
 from ._skimage import marching_cubes
 from ._tegl import Cancelled, __version__
 from ._track import Track, TrackEvent, TrackGraph, TrackHandle, TrackSample, TrackSegment
 
 __all__ = [
-    "Cancelled", "Component", "Components", "Contour", "ContourSize", "CurvedGrid", "CutMeasures", "Elements", "ElementSum", "FacetLevel",
-    "FacetReport", "Facets", "Image", "Incidence", "Index", "Intersections", "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport",
-    "SimplifyStats", "Track", "TrackEvent", "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__",
-    "check", "components", "contour", "contour_facets", "contour_mesh", "contour_mesh_facets", "contour_points", "count", "count_mesh", "elements", "fields", "filter",
-    "intersections", "load", "marching_cubes", "measure", "merge_vertices", "most_stable_scale", "read", "read_mesh",
-    "sample", "scale_space", "simplify", "slice", "track",
+    "Cancelled", "Component", "Components", "Contour", "ContourSize", "CurvedGrid", "CutMeasures", "Elements",
+    "ElementSum", "FacetLevel", "FacetReport", "Facets", "Frame", "Image", "Incidence", "Index", "Intersections",
+    "Measures", "MergeReport", "Mesh", "MeshIndex", "MeshReport", "PickReport", "SimplifyStats", "Track",
+    "TrackEvent", "TrackGraph", "TrackHandle", "TrackSample", "TrackSegment", "__version__", "check", "components",
+    "contour", "contour_facets", "contour_mesh", "contour_mesh_facets", "contour_points", "count", "count_mesh",
+    "elements", "fields", "filter", "frame_of", "intersections", "load", "marching_cubes", "measure",
+    "merge_vertices", "most_stable_scale", "read", "read_mesh", "sample", "scale_space", "simplify", "slice",
+    "track",
 ]

@@ -14,7 +14,8 @@ from . import _arguments, _export, _incidence, _kinds, _results, _outside, _tegl
 from ._arguments import Labelled, Place, Places, Progress
 from ._columns import ArrayOrdered
 from ._incidence import Incidence
-from ._results import Component, CutMeasures, Elements, Intersections, Measures, MergeReport, MeshReport, SimplifyStats
+from ._results import (Component, CutMeasures, Elements, Frame, Intersections, Measures, MergeReport, MeshReport,
+                       SimplifyStats)
 from ._track import TrackGraph
 
 
@@ -248,6 +249,12 @@ class Contour(ArrayOrdered):
                                  _arguments.threads_of(threads), progress)
         found = [Contour._of(cut, self._is_reversed, left) for cut in cuts]
         return found if several else found[0]
+
+    def frame_of(self, *, normal: Sequence[float] | np.ndarray, offset: float) -> Frame:
+        """The place of the cut by a hyperplane in the contour's space: see `tegl.frame_of`."""
+        direction = _arguments.as_numbers("normal", normal, "a number for each axis")
+        origin, axes = _tegl.frame_of(self._core, self._listed(direction), _arguments.as_number("offset", offset))
+        return Frame(np.array(self._listed(origin)), np.array(self._listed([self._listed(axis) for axis in axes])))
 
     def components(self, *, incidence: Incidence | None = None, threads: int = 0,
                    progress: Progress | None = None) -> Components:

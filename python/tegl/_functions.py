@@ -6,11 +6,13 @@ from __future__ import annotations
 import typing
 from collections.abc import Sequence
 
+import numpy as np
+
 from . import _arguments, _kinds
 from ._arguments import Labelled, Place, Places, Progress
 from ._contour import Components, Contour
 from ._incidence import Incidence
-from ._results import CutMeasures, Elements, Intersections, Measures, MergeReport, MeshReport, SimplifyStats
+from ._results import CutMeasures, Elements, Frame, Intersections, Measures, MergeReport, MeshReport, SimplifyStats
 from ._track import TrackGraph
 
 
@@ -64,6 +66,23 @@ def components(contour: Contour, *, incidence: Incidence | None = None, threads:
     """The connected components of a contour: their labels and measures; contours of selected ones."""
     _arguments.core_of(contour)
     return Contour.components(contour, incidence=incidence, threads=threads, progress=progress)
+
+
+@_arguments.documents("frame_of", "HyperplaneFrame")
+def frame_of(contour: Contour, *, normal: Sequence[float] | np.ndarray, offset: float) -> Frame:
+    """The place of the cut `tegl.slice(contour, normal=normal, offset=offset)` in the contour's space.
+
+    ::
+
+        frame = tegl.frame_of(contour, normal=(0, 1, 1, 0), offset=9)
+        cut = tegl.slice(contour, normal=(0, 1, 1, 0), offset=9)
+        points = frame.to_space(cut.vertices)                # origin + cut.vertices @ axes
+
+    Numbers of points and vectors are in the order of the columns of `vertices`, also those of the normal. It is defined
+    for every contour, also where the cut is empty.
+    """
+    _arguments.core_of(contour)
+    return Contour.frame_of(contour, normal=normal, offset=offset)
 
 
 @_arguments.documents("merge_vertices", "MergeCounts", "MergeReport")

@@ -43,6 +43,29 @@ class MeshReport:
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class Frame:
+    """Coordinates in a hyperplane of N-space, those of its cuts: see `tegl.frame_of`."""
+
+    origin: np.ndarray  #: N coordinates of the point of the hyperplane that is nearest to 0
+    axes: np.ndarray  #: N - 1 rows: orthonormal vectors of N-space, one for each column of the cut's vertices
+
+    def to_space(self, points) -> np.ndarray:
+        """Points of a cut, such as its vertices (#P x N - 1, or one point), in the space of the contour: #P x N."""
+        return self.origin + self._numbers("points of a cut", points, len(self.axes)) @ self.axes
+
+    def to_plane(self, points) -> np.ndarray:
+        """Coordinates of points of N-space (#P x N, or one point) in the hyperplane, after orthogonal projection."""
+        return self._numbers("points", points, len(self.origin)) @ self.axes.T
+
+    @staticmethod
+    def _numbers(name: str, points, count: int) -> np.ndarray:
+        found = _arguments.real(name, points).astype(np.float64, copy=False)
+        if found.ndim == 0 or found.shape[-1] != count:
+            raise ValueError(f"{name} have the shape {found.shape}; expected {count} coordinates each")
+        return found
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Intersections:
     """The pairs of simplices that intersect outside of their common face."""
 

@@ -238,3 +238,35 @@ def test_bad_curved_points_are_errors():
     points[4, 4, :, 1] = np.nan
     with pytest.raises(ValueError, match="unknown coordinates; expected missing values there"):
         tegl.contour(values, 0.5, curved=points)
+
+
+@pytest.mark.parametrize("time_axis", [0, -1])
+def test_structured_grids_of_collections_move_over_time(tmp_path, time_axis):
+    angle, radius = np.meshgrid(2 * np.pi * np.arange(24) / 24, np.linspace(1, 2, 6))
+    sets = ""
+    for time, moved in ((0, 0.0), (1, 0.5), (3, 2.5)):
+        points = np.stack([moved + radius * np.cos(angle), radius * np.sin(angle), 0 * radius], axis=-1)
+        text = ["\n".join(map(repr, map(float, numbers.ravel()))) for numbers in (radius, points)]
+        (tmp_path / f"{time}.vts").write_text(
+            '<VTKFile type="StructuredGrid"><StructuredGrid WholeExtent="0 23 0 5 0 0"><Piece Extent="0 23 0 5 0 0"><PointData>'
+            f'<DataArray type="Float64" Name="radius" format="ascii">{text[0]}</DataArray></PointData><Points>'
+            f'<DataArray type="Float64" Name="p" NumberOfComponents="3" format="ascii">{text[1]}</DataArray></Points></Piece>'
+            '</StructuredGrid></VTKFile>')
+        sets += f'<DataSet timestep="{time}" file="{time}.vts"/>'
+    (tmp_path / "moving.pvd").write_text(f'<VTKFile type="Collection"><Collection>{sets}</Collection></VTKFile>')
+    image = tegl.read(tmp_path / "moving.pvd")
+    assert image.curved[2].shape == (3, 6, 24) and image.curved[1].shape == (1, 6, 24)  # y does not change
+    assert "x -2 to 4.5 (curved)" in str(image)
+    tube = tegl.contour(image, 1.55, periodic="x", dtype=float)
+    assert tube.check().components == 1 and tube.check().euler == 0
+    for time, moved in ((0.5, 0.25), (2.0, 1.5)):
+        y, x = tube.slice(time).vertices.T
+        found = np.hypot(x - moved, y)  # of samples' rows, and of chords between them
+        assert found.max() == pytest.approx(1.55) and found.min() == pytest.approx(1.55 * np.cos(np.pi / 24))
+    # the same arrays, given by the caller
+    turned = (lambda array: array) if time_axis == 0 else (lambda array: np.moveaxis(array, 0, -1))
+    curved = {axis if time_axis == 0 else axis - 1: turned(array) for axis, array in image.curved.items()}
+    coords = [[0, 1, 3], None, None] if time_axis == 0 else [None, None, [0, 1, 3]]
+    own = tegl.contour(turned(image.array), 1.55, curved=curved, coords=coords, periodic=2 if time_axis == 0 else 1,
+                       time_axis=time_axis, dtype=float)
+    assert own.check().euler == 0 and own.measure().size == pytest.approx(tube.measure().size)

@@ -47,6 +47,69 @@ def test_oblique_cuts_lie_in_their_plane():
     assert cut.measure().content == pytest.approx(signed_content(cut.vertices, cut.simplices))
 
 
+@pytest.mark.parametrize("time_axis", [0, -1])
+@pytest.mark.parametrize("normal", [(1, 1, 1), (1, 2, 0), (-1, 0.5, 3), (0, 1, -1), (0, -2, 0), (1, 1, 1, 1), (0, 0, 1, 2),
+                                    (3, -1, 1, 0.5), (1, 1, 0, 0, 0), (1, 1, 1, 2, 1)])
+def test_frames_place_cuts_on_the_contour(normal, time_axis):
+    ndim = len(normal)
+    spacing, centre, radius = np.linspace(1, 1.5, ndim), np.arange(1.0, ndim + 1) + 0.25, 3.5
+    shape = (9,) * ndim
+    steps = np.stack(np.meshgrid(*(np.arange(9) - 4.0 for _ in shape), indexing="ij"), axis=-1) * spacing
+    # linear in each tile, so that the contour is known: a box, which has no symmetry that hides wrong axes
+    field = np.max(np.abs(steps) / np.arange(2, ndim + 2), axis=-1) - 1.0
+    contour = tegl.contour(-field, 0.0, spacing=spacing, origin=centre - 4 * spacing, time_axis=time_axis, dtype=float)
+    offset = float(np.dot(normal, centre)) + 0.3
+    frame, cut = contour.frame_of(normal=normal, offset=offset), contour.slice(normal=normal, offset=offset)
+    assert frame.origin.shape == (ndim,) and frame.axes.shape == (ndim - 1, ndim)
+    np.testing.assert_allclose(frame.axes @ frame.axes.T, np.eye(ndim - 1), atol=1e-12)
+    np.testing.assert_allclose(frame.axes @ normal, 0, atol=1e-12)
+    # each vertex of the cut is on an edge of the contour
+    points = frame.to_space(cut.vertices)
+    np.testing.assert_allclose(points @ normal, offset, atol=1e-9)
+    np.testing.assert_allclose(frame.to_plane(points), cut.vertices, atol=1e-9)
+    corners = contour.vertices[np.unique(np.sort(contour.simplices[:, pairs_of(ndim)], axis=-1).reshape(-1, 2), axis=0)]
+    heights = corners @ np.array(normal, float) - offset
+    crossed = (heights[:, 0] < 0) != (heights[:, 1] < 0)
+    share = heights[crossed, 0] / (heights[crossed, 0] - heights[crossed, 1])
+    ends = corners[crossed]
+    expected = ends[:, 0] + share[:, None] * (ends[:, 1] - ends[:, 0])
+    assert len(points) > 10
+    for point in points[:: max(1, len(points) // 50)]:
+        assert np.abs(expected - point).max(axis=1).min() < 1e-9
+    # and a cut across an axis keeps the others
+    across = contour.frame_of(normal=np.eye(ndim)[1], offset=2.0)
+    assert np.array_equal(across.axes, np.delete(np.eye(ndim), 1, axis=0)) and across.origin[1] == 2.0
+    assert np.array_equal(tegl.frame_of(contour, normal=normal, offset=offset).axes, frame.axes)
+
+
+def pairs_of(ndim):
+    """Places of the ends of all edges of a simplex."""
+    return [(i, j) for i in range(ndim) for j in range(i)]
+
+
+def test_frames_place_cuts_of_crystals_and_name_wrong_numbers():
+    turn = 2 * np.pi * np.arange(16) / 16
+    x, y, z = np.meshgrid(turn, turn, turn, indexing="ij")
+    values = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+    cell = tegl.contour(values, 0.01, periodic="all", spacing=1 / 16, dtype=float)
+    for place in (dict(normal=(1, 1, 1), offset=0.4), dict(normal=(1, 1, 1), offset=7.4), dict(normal=(2, -1, 0), offset=0.3)):
+        cut = cell.slice(**place)
+        x, y, z = 2 * np.pi * cell.frame_of(**place).to_space(cut.vertices).T
+        found = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
+        assert np.abs(found - 0.01).max() < 0.05
+    frame = cell.frame_of(normal=(1, 1, 1), offset=0.4)
+    with pytest.raises(ValueError, match=r"points of a cut have the shape \(4, 3\); expected 2 coordinates each"):
+        frame.to_space(np.zeros((4, 3)))
+    with pytest.raises(ValueError, match=r"points have the shape \(2,\); expected 3 coordinates each"):
+        frame.to_plane((1.0, 2.0))
+    with pytest.raises(ValueError, match="the normal has 2 numbers; expected one for each of 3 axes"):
+        cell.frame_of(normal=(1, 1), offset=0.4)
+    with pytest.raises(ValueError, match="normal"):
+        cell.frame_of(normal=(0, 0, 0), offset=0.4)
+    with pytest.raises(TypeError, match="is not a contour"):
+        tegl.frame_of(values, normal=(1, 1, 1), offset=0.4)
+
+
 def test_cuts_straight_from_an_array_are_those_of_the_contour(moving_balls):
     whole = tegl.contour(moving_balls, 0.0, dtype=np.float64)
     for arguments in (dict(at=2.25), dict(at=9.5, axis=3), dict(at=4.0)):

@@ -39,7 +39,7 @@ def test_the_docstring_of_the_package_runs(tmp_path, monkeypatch):
 
 def test_the_page_names_all_of_the_package():
     text = (SOURCE / "docs/python.md").read_text(encoding="utf-8")
-    for name in ("contour", "slice", "track", "components", "measure", "elements", "simplify", "check", "intersections", "Index", "read",
+    for name in ("contour", "slice", "frame_of", "track", "components", "measure", "elements", "simplify", "check", "intersections", "Index", "read",
                  "load", "marching_cubes", "contour_mesh", "Cancelled"):
         assert re.search(rf"\b{name}\b", text), name
 

@@ -166,6 +166,13 @@ TEST_F(Errors, NumbersThatAreNoneExitWith2) {
     expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", path("out.ply"), "--epsilon", epsilon},
                    {epsilon, "--epsilon"});
   }
+  const auto refuse_periodic = [&](const std::string& periodic, const std::string& message) {
+    expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", path("out.vtkhdf"), "--periodic", periodic},
+                   {message});
+  };
+  refuse_periodic("x=nan", "--periodic x is 'nan'; expected a finite number");
+  refuse_periodic("y=", "--periodic y is ''; expected a number");
+  refuse_periodic("y,all", "--periodic names the axis y twice");
 }
 
 TEST_F(Errors, VariablesThatDoNotExistExitWith2) {

@@ -125,6 +125,14 @@ TEST_F(FilterCommand, AFilteredImageIsContoured) {
   EXPECT_GT(run.json()["simplices"], 0);
 }
 
+TEST_F(FilterCommand, AMeshIsNoImage) {
+  const std::string mesh = R"(<VTKFile type="UnstructuredGrid"><UnstructuredGrid/></VTKFile>)";
+  const RunResult of_mesh = run_tegl({"filter", write("mesh.vtu", mesh), "--median", "1", "-o", path("a.nrrd")});
+  EXPECT_EQ(of_mesh.exit, 4);
+  EXPECT_THAT(of_mesh.err,
+              HasSubstr("expected an image: ImageData or RectilinearGrid; commands with --iso, and info,"));
+}
+
 TEST_F(FilterCommand, NamesWhatIsWrong) {
   const auto refused = [&](std::vector<std::string> options, const std::string& part, int exit) {
     options.insert(options.begin(), {"filter", volume()});

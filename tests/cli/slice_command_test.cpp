@@ -473,6 +473,49 @@ TEST_F(Slice, ScaleStretchesWhatIsCutAndNotThePlane) {
         << scale;
 }
 
+TEST_F(Slice, ErrorsOfCutsFarFromAPeriodNameTheCutAndItsOwnNumbers) {
+  const Samples waves = sample({12, 12, 12}, [](const std::vector<double>& x) {
+    constexpr double kTurn = 6.283185307179586 / 12;
+    return std::cos(kTurn * x[0]) + std::cos(kTurn * x[1]) + std::cos(kTurn * x[2]);
+  });
+  const auto saved = [&](const std::string& name, const std::string& directions) {
+    const std::string image =
+        write(name + ".nrrd", nrrd_bytes(waves, "space dimension: 3\nspace directions: " + directions + "\n"));
+    const RunResult run =
+        run_tegl({"contour", image, "--iso", "0.5", "--periodic", "all", "-o", path(name + ".vtkhdf")});
+    EXPECT_EQ(run.exit, 0) << run.err;
+    return path(name + ".vtkhdf");
+  };
+  const auto refused = [&](std::vector<std::string> options, const std::string& message) {
+    options.insert(options.begin(), "slice");
+    options.insert(options.end(), {"-o", path("cut_{n}.vtkhdf")});
+    const RunResult run = run_tegl(options);
+    EXPECT_EQ(run.exit, 2);
+    EXPECT_THAT(run.err, HasSubstr(message));
+  };
+  const std::string cube = saved("cube", "(1,0,0) (0,1,0) (0,0,1)"),
+                    oblique = saved("oblique", "(1,0,0) (0,1,0) (0.5,0,1)");
+  refused({cube, "--plane", "0,3,3=1,1e12"},
+          "the cut at 3 y + 3 z = 1e12: a cut across a period has the offset 1000000000000 along the normal, with the "
+          "period 36 from 0; expected at most 536870912 periods from there");
+  refused({oblique, "--at", "z=1e12", "--scale", "z=10"},
+          "the cut at z = 1e12, on axes scaled by --scale: a cut across a period has the coordinate 10000000000000 "
+          "along the axis z, with the period 120 from 0");
+  // it does repeat itself, but not within 32 periods
+  const RunResult steep = run_tegl({"slice", cube, "--plane", "33,1,0=20", "-o", path("cut.vtkhdf")});
+  EXPECT_EQ(steep.exit, 0) << steep.err;
+  EXPECT_THAT(steep.err, HasSubstr("unrolled for cuts along which it does not repeat itself within 32 periods"));
+}
+
+TEST_F(Slice, ThroughVerticesNamesTheReasonOfZeroSizes) {
+  // vertices on edges along x lie in the plane, up to rounding
+  const std::string image = write("balls.nrrd", nrrd_bytes(merging_balls(12, 8), "spacings: 0.1 0.1 0.1 0.1\n"));
+  ASSERT_EQ(run_tegl({"contour", image, "--iso", "0.1", "--epsilon", "0.01", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
+  const RunResult run = run_tegl({"slice", path("all.vtkhdf"), "--plane", "0,0,1,1=0.9", "-o", path("cut.vtkhdf")});
+  EXPECT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("of zero size (the cut passes through vertices of the contour, or samples equal"));
+}
+
 TEST_F(Slice, AStackIsEachOfItsCuts) {
   ASSERT_EQ(run_tegl({"contour", file(), "--iso", "0", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
   const RunResult run =

@@ -3,12 +3,15 @@
 // Structured grids of VTK (.vts) as meshes and, with --curved-grid, as images on curved grids, run as in a shell.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "tegl/io.hpp"
 #include "tegl_program.hpp"
 
 namespace tegl::test {
@@ -19,15 +22,15 @@ using testing::HasSubstr;
 constexpr int kAround = 24, kOut = 6;
 
 /// Rings of 24 x 6 points between the radii 1 and 2, in layers along z, with the radius as the value at points.
-/// `of_cells`: arrays of the cells.
-std::string rings_vts(int layers, const std::string& of_cells = "") {
+/// `of_cells`: arrays of the cells. `moved`: how far along x.
+std::string rings_vts(int layers, const std::string& of_cells = "", double moved = 0.0) {
   std::ostringstream points, values, text;
   points.precision(17);
   for (int k = 0; k < layers; ++k)
     for (int j = 0; j < kOut; ++j)
       for (int i = 0; i < kAround; ++i) {
         const double angle = 2 * std::numbers::pi * i / kAround, radius = 1 + 0.2 * j;
-        points << radius * std::cos(angle) << ' ' << radius * std::sin(angle) << ' ' << 0.5 * k << '\n';
+        points << moved + radius * std::cos(angle) << ' ' << radius * std::sin(angle) << ' ' << 0.5 * k << '\n';
         values << radius << '\n';
       }
   text << R"(<VTKFile type="StructuredGrid" version="0.1"><StructuredGrid WholeExtent="0 23 0 5 0 )" << layers - 1
@@ -80,6 +83,49 @@ TEST_F(StructuredGrids, AreMeshesOrCurvedGridsWithTheSameContours) {
       EXPECT_NEAR(around[0]["size"].get<double>(), size * 24 / 23, 1e-5 * size);
     }
     EXPECT_EQ(run_json({"components", file})["components"][0]["euler"], 1);
+  }
+}
+
+TEST_F(StructuredGrids, ThatMoveAreCurvedGridsOverTime) {
+  for (const int layers : {1, 3}) {
+    SCOPED_TRACE(layers);
+    std::string sets;
+    for (const auto& [time, moved] : {std::pair{"0", 0.0}, std::pair{"1", 0.5}, std::pair{"3", 2.5}}) {
+      const std::string name = std::string("at") + time + ".vts";
+      write(name, rings_vts(layers, "", moved));
+      sets += std::string("<DataSet timestep=\"") + time + "\" file=\"" + name + "\"/>";
+    }
+    const std::string file =
+        write("rings.pvd", "<VTKFile type=\"Collection\"><Collection>" + sets + "</Collection></VTKFile>");
+    const std::string output = path("out.vtkhdf");
+    // open at the seam, as the mesh; closed around it as a curved grid
+    const auto mesh = run_json({"contour", file, "-o", output});
+    const auto open = run_json({"contour", file, "--curved-grid", "-o", output});
+    for (const char* const count : {"vertices", "simplices"}) EXPECT_EQ(open[count], mesh[count]) << count;
+    const auto around = run_json({"components", file, "--curved-grid", "--periodic", "i"})["components"];
+    ASSERT_EQ(around.size(), 1u);
+    EXPECT_EQ(around[0]["euler"], 0);
+    EXPECT_EQ(run_json({"track", file, "--curved-grid", "--periodic", "i"})["tracks_found"], 1);
+    // at any time, the rings have moved
+    for (const auto& [at, moved] : {std::pair{"0.5", 0.25}, std::pair{"2", 1.5}, std::pair{"3", 2.5}}) {
+      const auto cut =
+          run_json({"slice", file, "--curved-grid", "--periodic", "i", "--at", std::string("t=") + at, "-o", output});
+      EXPECT_EQ(cut["euler"], 0);
+      const Mesh ring = read_mesh(output);
+      ASSERT_GE(ring.coordinates.size(), 48u);
+      const auto columns = static_cast<std::size_t>(ring.space_dim);
+      double most = 0.0, least = 2.0;
+      for (std::size_t v = 0; v < ring.coordinates.size(); v += columns) {
+        const double radius = std::hypot(ring.coordinates[v] - moved, ring.coordinates[v + 1]);
+        most = std::max(most, radius);
+        least = std::min(least, radius);
+      }
+      EXPECT_NEAR(most, 1.55, 1e-5) << at;
+      EXPECT_GE(least, 1.55 * std::cos(std::numbers::pi / kAround) - 1e-5) << at;  // on chords
+    }
+    const RunResult info = run_tegl({"info", file, "--curved-grid"});
+    EXPECT_EQ(info.exit, 0) << info.err;
+    EXPECT_THAT(info.out, HasSubstr("a curved grid: x, y"));
   }
 }
 

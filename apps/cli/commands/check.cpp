@@ -218,7 +218,9 @@ class CheckCommand final : public Command {
   /// Texts for a mesh of unknown origin.
   static Wording wording() {
     Wording wording;
-    wording.no_size = "if tegl made the contour: samples equal the isovalue; 'tegl contour --epsilon' avoids them";
+    wording.no_size =
+        "if tegl made the contour: samples equal the isovalue, which 'tegl contour --epsilon' avoids, or a cut passes "
+        "through vertices of its contour";
     return wording;
   }
 

@@ -95,6 +95,21 @@ struct Wrapped {
   bool is_unrolled = false;          ///< for cuts that wrapped contours refuse
 };
 
+/// Throws InvalidArgument, with the cut as it was given, for a cut too far from the contour's periods.
+template <int N, class Real>
+void require_near_periods(const Contour<N, Real>& contour, const Cut& cut, const std::vector<double>& factors) {
+  Contour<N, Real> empty;  // so that its cut takes no time
+  empty.axis_names = contour.axis_names;
+  empty.periods = contour.periods;
+  try {
+    (void)slice(empty, hyperplane_of<N>(cut, factors));
+  } catch (const Error& error) {
+    const bool is_scaled = std::any_of(factors.begin(), factors.end(), [](double factor) { return factor != 1.0; });
+    throw Error(error.code(), fmt::format("the cut at {} = {}{}: {}", cut.axis, cut.text,
+                                          is_scaled ? ", on axes scaled by --scale" : "", error.what()));
+  }
+}
+
 /// Cuts a contour after its axes are scaled; all cuts of one direction in one pass.
 template <int N, class Real>
 Wrapped cut_contour_of(Contour<N, Real> contour, const std::vector<double>& factors, const ExtractionOptions& own,
@@ -111,6 +126,7 @@ Wrapped cut_contour_of(Contour<N, Real> contour, const std::vector<double>& fact
       hyperplanes.push_back(hyperplane_of<N>(*results[end].cut, factors));
     Stopwatch watch;
     const bool is_refused = !cuts_wrapped(contour.periods, hyperplanes.front());
+    for (std::size_t i = first; i < end && !is_refused; ++i) require_near_periods(contour, *results[i].cut, factors);
     if (is_refused && !unrolled) unrolled = unroll(contour).contour;
     auto cuts = slice_stack(is_refused ? *unrolled : contour, hyperplanes, {own.threads(), bar.stage("slice")});
     for (std::size_t i = 0; i < cuts.size(); ++i) {
@@ -327,8 +343,12 @@ class SliceCommand final : public Command {
   /// Makes a result for each cut, with the data that is known in advance.
   [[nodiscard]] std::vector<ContourResult> results_for(std::vector<Cut> cuts, const CutSpace& space) const {
     std::vector<ContourResult> results;
-    for (Cut& cut : resolve(std::move(cuts), space, options_.allows_empty()))
-      results.emplace_back().cut = std::move(cut);
+    for (Cut& cut : resolve(std::move(cuts), space, options_.allows_empty())) {
+      ContourResult& result = results.emplace_back();
+      result.cut = std::move(cut);
+      result.wording.no_size =
+          "the cut passes through vertices of the contour, or samples equal the isovalue, which --epsilon avoids";
+    }
     for (std::size_t i = 0; i < results.size(); ++i) results[i].output = outputs_[i];
     return results;
   }

@@ -448,10 +448,10 @@ std::vector<NamedPeriod> named_periods(const std::vector<AxisNames>& axes, const
     for (std::size_t a = is_all ? 0 : named; a < (is_all ? axes.size() : named + 1); ++a) {
       const auto axis = static_cast<int>(a);
       if (std::any_of(found.begin(), found.end(), [&](const NamedPeriod& other) { return other.axis == axis; }))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("--periodic names the axis {} twice; expected it once", name));
+        throw Error(ErrorCode::InvalidArgument, fmt::format("--periodic names the axis {} twice; expected it once",
+                                                            is_all ? axes[a].names.front() : own));
       NamedPeriod& one = found.emplace_back(NamedPeriod{axis, std::nullopt});
-      if (equal != std::string::npos) one.period = parse_finite("--periodic", name.substr(equal + 1));
+      if (equal != std::string::npos) one.period = parse_finite("--periodic " + own, name.substr(equal + 1));
       if (one.period && !(*one.period > 0.0))
         throw Error(ErrorCode::InvalidArgument, fmt::format("--periodic {}; expected a positive period", name));
     }

@@ -88,6 +88,8 @@ std::string with_option_names(std::string message) {
   if (message.find("a fixed index of another dimension") != std::string::npos) message += " (--fix DIMENSION=INDEX)";
   if (message.find("unknown image format") != std::string::npos)
     message += "; commands with --iso, and info, also take meshes (.vtu, .vts, .pvd) and tables of points (.csv)";
+  if (message.find("holds a mesh ('UnstructuredGrid')") != std::string::npos)
+    message += "; commands with --iso, and info, take meshes";
   return message;
 }
 

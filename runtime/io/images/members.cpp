@@ -14,6 +14,8 @@
 #include "base/common.hpp"
 #include "base/reading_process.hpp"
 #include "base/time_units.hpp"
+#include "tegl/curved.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl::io_detail {
 
@@ -255,6 +257,46 @@ struct Members {
   std::size_t type = 0;   ///< index of ValueArray
 };
 
+/// Whether two coordinates of curved grids may differ only by their numbers.
+bool are_alike(const CurvedAxis& a, const CurvedAxis& b) {
+  return a.axis == b.axis && a.along == b.along && a.name == b.name && a.unit == b.unit && a.size() == b.size();
+}
+
+/// The coordinates of the curved grid of all files: those that differ from file to file are along the last axis of
+/// `grid`, too. Takes them out of the members.
+std::vector<CurvedAxis> join_curved(std::vector<Member>& members, const RawGrid& grid) {
+  std::vector<CurvedAxis> joined = std::move(members.front().info.curved);
+  const auto added = static_cast<unsigned>(grid.axes.size()) - 1;
+  std::vector<unsigned char> moves(joined.size(), 0);
+  for (std::size_t m = 1; m < members.size(); ++m) {
+    const std::vector<CurvedAxis>& own = members[m].info.curved;
+    if (!std::equal(own.begin(), own.end(), joined.begin(), joined.end(), are_alike))
+      fail(ErrorCode::UnsupportedData, members[m].path,
+           "has other curved coordinates than {}; expected coordinates of the same names, units and axes in all files",
+           members.front().path.string());
+    for (std::size_t c = 0; c < joined.size(); ++c)
+      if (!(own[c] == joined[c])) moves[c] = 1;
+  }
+  for (std::size_t c = 0; c < joined.size(); ++c) {
+    if (moves[c] == 0) continue;
+    const std::size_t size = joined[c].values.size();
+    expect_memory(kBytesPerValue * size * members.size());
+    joined[c].values.reserve(size * members.size());
+    for (std::size_t m = 1; m < members.size(); ++m) {
+      std::vector<double> values = std::move(members[m].info.curved[c].values);
+      joined[c].values.insert(joined[c].values.end(), values.begin(), values.end());
+    }
+    joined[c].along |= 1u << added;
+    if (!is_longitude_unit(joined[c].unit)) continue;
+    // each file has continued its own; now also from file to file
+    std::vector<std::size_t> sizes;
+    for (std::size_t a = 0; a < grid.axes.size(); ++a)
+      if ((joined[c].along >> a & 1u) != 0) sizes.push_back(grid.axes[a].size());
+    continue_longitudes(joined[c].values, sizes);
+  }
+  return joined;
+}
+
 Members join(std::vector<Member>&& members, const SeriesOptions& options) {
   auto [last, direction] = make_axis(members, options);
   const Member& first = members.front();
@@ -262,15 +304,12 @@ Members join(std::vector<Member>&& members, const SeriesOptions& options) {
   for (const Axis& axis : first.grid.axes) result.layer *= axis.size();
   result.type = first.type;
   result.grid = with_last_axis(first.grid, std::move(last));
+  std::vector<CurvedAxis> curved = join_curved(members, result.grid);
   result.info = first.info;
+  result.info.curved = std::move(curved);
   result.info.lattice = lattice_in_time(result.info.lattice, first.path);
   if (!result.info.axis_directions.empty()) result.info.axis_directions.push_back(direction);
-  for (const Member& member : members) {
-    if (member.info.curved != result.info.curved)
-      fail(ErrorCode::UnsupportedData, member.path,
-           "has other curved coordinates than {}; expected the same in all files", members.front().path.string());
-    result.paths.push_back(member.path);
-  }
+  for (const Member& member : members) result.paths.push_back(member.path);
   return result;
 }
 

@@ -32,7 +32,10 @@ struct OpenVtkImage {
   explicit OpenVtkImage(const fs::path& path, const Progress& progress) : file(path, progress) {
     if (file.type() != "ImageData" && file.type() != "RectilinearGrid" && file.type() != "StructuredGrid")
       fail(ErrorCode::UnsupportedData, path, "holds a mesh ({}); expected an image: ImageData or RectilinearGrid{}",
-           shown(file.type()), file.type() == "UnstructuredGrid" ? ", or the extension .vtu for this mesh" : "");
+           shown(file.type()),
+           file.type() == "UnstructuredGrid" && lower(path.extension().string()) != ".vtu"
+               ? ", or the extension .vtu for this mesh"
+               : "");
     all = variables_of(file);
   }
 

@@ -28,6 +28,12 @@ std::vector<PvdStep> read_pvd(const fs::path& path, bool allow_outside_paths) {
   std::vector<PvdStep> steps;
   for (const XmlElement& element : collection->children) {
     if (element.name != "DataSet") continue;
+    const auto require_given = [&](std::string_view key, std::string_view expected) {
+      if (!element.attributes.contains(key))
+        fail(ErrorCode::MalformedFile, path, "<DataSet> has no {}; expected {}", key, expected);
+    };
+    require_given("timestep", "one that is a finite number");
+    require_given("file", "the name of a file");
     PvdStep step;
     const std::string_view time = element.attribute("timestep");
     if (!parse_number(trim(time), step.time) || !std::isfinite(step.time))

@@ -267,10 +267,11 @@ MovedLevel level_in_period(const HyperplaneFamily<N>& family, const CrossedPerio
 }
 
 template <int N>
-void require_near(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset) {
+void require_near(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed,
+                  std::span<const std::string> names, double offset) {
   const double level = family.template level<double>(offset);
   if (crossed.any && !crossed.is_straight && !is_near_period(crossed, level))
-    fail_far(family, crossed, "a cut across a period", level);
+    fail_far(family, crossed, names, "a cut across a period", level);
 }
 
 template <int N>
@@ -279,25 +280,30 @@ bool is_near_period(const CrossedPeriods<N>& crossed, double height) {
 }
 
 template <int N>
-void fail_far(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, const std::string& what,
-              double height) {
+void fail_far(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, std::span<const std::string> names,
+              const std::string& what, double height) {
   const bool is_place = family.is_across_axis();
-  const double sign = is_place ? family.sign() : 1.0;
+  const double factor = is_place ? family.sign() : family.unit();  // from heights to the numbers that were given
+  const int axis = family.dropped_axis();
+  const std::string& name = names[static_cast<std::size_t>(axis)];
   throw Error(
       ErrorCode::InvalidArgument,
       fmt::format("{} has {}, with the period {} from {}; expected at most {} periods from there", what,
-                  is_place ? fmt::format("the coordinate {} along axis {}", sign * height, family.dropped_axis())
-                           : fmt::format("the height {} over the hyperplane through 0", height),
-                  std::abs(crossed.height), sign * crossed.across.start * crossed.height, kFarthest));
+                  is_place ? fmt::format("the coordinate {} along {}", factor * height,
+                                         name.empty() ? fmt::format("axis {}", axis) : "the axis " + name)
+                           : fmt::format("the offset {} along the normal", factor * height),
+                  std::abs(factor * crossed.height), factor * crossed.across.start * crossed.height, kFarthest));
 }
 
-#define TEGL_INSTANTIATE_CROSSED(N)                                                                          \
-  template CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>&, std::span<const Period<N>>);        \
-  template MovedLevel level_in_period<float>(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);  \
-  template MovedLevel level_in_period<double>(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double); \
-  template void require_near(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);                  \
-  template bool is_near_period(const CrossedPeriods<N>&, double);                                            \
-  template void fail_far(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, const std::string&, double);
+#define TEGL_INSTANTIATE_CROSSED(N)                                                                              \
+  template CrossedPeriods<N> crossed_periods(const HyperplaneFamily<N>&, std::span<const Period<N>>);            \
+  template MovedLevel level_in_period<float>(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);      \
+  template MovedLevel level_in_period<double>(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, double);     \
+  template void require_near(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, std::span<const std::string>, \
+                             double);                                                                            \
+  template bool is_near_period(const CrossedPeriods<N>&, double);                                                \
+  template void fail_far(const HyperplaneFamily<N>&, const CrossedPeriods<N>&, std::span<const std::string>,     \
+                         const std::string&, double);
 TEGL_INSTANTIATE_CROSSED(3)
 TEGL_INSTANTIATE_CROSSED(4)
 TEGL_INSTANTIATE_CROSSED(5)

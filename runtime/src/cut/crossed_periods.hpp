@@ -52,15 +52,17 @@ template <class Real, int N>
 MovedLevel level_in_period(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset);
 
 /// Throws InvalidArgument if the cut at this offset is moved from its period (not `is_straight`), and is far from it.
+/// `names`: of the axes, for the message.
 template <int N>
-void require_near(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, double offset);
+void require_near(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed,
+                  std::span<const std::string> names, double offset);
 
 /// Whether a height is at most 2^29 periods from the start of `across`. Farther ones are too inexact.
 template <int N>
 bool is_near_period(const CrossedPeriods<N>& crossed, double height);
-/// Throws InvalidArgument: `what` has a height that is not near.
+/// Throws InvalidArgument: `what` has a height that is not near. Numbers are those of the given normal.
 template <int N>
-[[noreturn]] void fail_far(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed, const std::string& what,
-                           double height);
+[[noreturn]] void fail_far(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crossed,
+                           std::span<const std::string> names, const std::string& what, double height);
 
 }  // namespace tegl::detail

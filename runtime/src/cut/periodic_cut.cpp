@@ -84,7 +84,9 @@ class Mover {
     });
     if (are_near) return;
     for (std::size_t v = 0; v < contour_.vertices.size(); ++v)
-      if (is_far(v)) fail_far(family_, crossed_, fmt::format("vertex {}", v), family_.height(contour_.vertices[v]));
+      if (is_far(v))
+        fail_far(family_, crossed_, contour_.axis_names, fmt::format("vertex {}", v),
+                 family_.height(contour_.vertices[v]));
   }
 
   /// By the dual vectors, as those of `unroll`: heights also differ by the steps of axes that are not periodic.

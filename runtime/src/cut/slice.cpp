@@ -194,8 +194,8 @@ detail::CrossedPeriods<N> periods_to_cut(const HyperplaneFamily<N>& family, std:
   detail::CrossedPeriods<N> crossed = detail::crossed_periods<N>(family, periods);
   if (!crossed.has_cuts)
     throw Error(ErrorCode::InvalidArgument,
-                "cut of a wrapped contour across one of its periods, along which it does not repeat itself; expected a "
-                "hyperplane for which cuts_wrapped is true, or an unrolled contour");
+                "cut of a wrapped contour across one of its periods, along which it does not repeat itself within 32 "
+                "periods; expected another hyperplane, or an unrolled contour");
   return crossed;
 }
 
@@ -273,7 +273,7 @@ requires DimensionBetween<N, 3, 5> Contour<N - 1, Real> slice(const Contour<N, R
                                                               const WorkOptions& work) {
   const HyperplaneFamily<N> family(hyperplane.normal);
   const detail::CrossedPeriods<N> crossed = periods_to_cut<N>(family, contour.periods);
-  detail::require_near(family, crossed, hyperplane.offset);
+  detail::require_near(family, crossed, contour.axis_names, hyperplane.offset);
   const auto [level, times] = level_of<Real>(family, crossed, hyperplane.offset);
   Contour<N - 1, Real> cut;
   if (crossed.any) {
@@ -296,7 +296,8 @@ requires DimensionBetween<N, 3, 5> std::vector<Contour<N - 1, Real>> slice_stack
   std::vector<Parallels<N, Real>> groups;
   const std::vector<StackedCut> stack = group_by_normal<N, Real>(contour, hyperplanes, groups);
   for (std::size_t i = 0; i < stack.size(); ++i)
-    detail::require_near(groups[stack[i].parallels].family, groups[stack[i].parallels].crossed, hyperplanes[i].offset);
+    detail::require_near(groups[stack[i].parallels].family, groups[stack[i].parallels].crossed, contour.axis_names,
+                         hyperplanes[i].offset);
   detail::require_sound(contour);
   const auto steps = static_cast<double>(groups.size() + stack.size());
   // one pass over the contour for each normal

@@ -323,5 +323,37 @@ TEST(NetCdfCoordinates, LongitudesOfFilesAreContinuedAroundLand) {
   }
 }
 
+TEST(NetCdfCoordinates, ThatDifferFromFileToFileAreAlongTheTime) {
+  const TempDir dir;
+  std::vector<fs::path> files;
+  std::vector<double> expected;
+  const auto write = [&](double moved, const std::string& unit) {
+    Plane plane;
+    for (int k = 0; k < 12; ++k) {
+      const double longitude = moved + k % 4;
+      if (unit == "degrees_east") expected.push_back(longitude);
+      plane.first.push_back(longitude > 180 ? longitude - 360 : longitude);
+      plane.second.push_back(10 + k / 4);
+    }
+    plane.of_first = {{"units", unit}};
+    plane.of_second = {{"units", "degrees_north"}};
+    files.push_back(dir / (std::to_string(files.size()) + ".nc"));
+    plane.write(files.back());
+  };
+  for (const double moved : {170.0, 178.5, 188.0}) write(moved, "degrees_east");  // the last one is stored from -172 on
+  const ReadSeriesResult read = read_series(files, {});
+  ASSERT_TRUE(std::holds_alternative<AnyImageN<3>>(read.image));
+  const std::vector<CurvedAxis>& curved = read.info.curved;
+  ASSERT_EQ(curved.size(), 2U);
+  EXPECT_EQ(curved[0].along, 7U);
+  EXPECT_EQ(coordinates_of(curved[0]), expected);
+  EXPECT_EQ(curved[1].along, 3U);
+  EXPECT_EQ(curved[1].size(), 12U);
+  write(170, "km");
+  expect_error(ErrorCode::UnsupportedData,
+               {"3.nc", "has other curved coordinates than", "expected coordinates of the same names, units and axes"},
+               [&] { (void)read_series(files, {}); });
+}
+
 }  // namespace
 }  // namespace tegl::test

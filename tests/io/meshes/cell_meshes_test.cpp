@@ -619,6 +619,9 @@ TEST(CellMesh, CollectionsNameFilesInTheirFolder) {
                                            testing::Not(testing::HasSubstr("--sort"))));
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"<DataSet timestep=\"x\" file=\"a.vtu\"/>", "timestep='x'"},
+      {"<DataSet file=\"a.vtu\"/>", "<DataSet> has no timestep; expected one that is a finite number"},
+      {"<DataSet timestep=\"\" file=\"a.vtu\"/>", "timestep=''"},
+      {"<DataSet timestep=\"1\"/>", "<DataSet> has no file; expected the name of a file"},
       {"<DataSet timestep=\"1\" file=\"../a.vtu\"/>", "a.vtu"},
       {"<DataSet timestep=\"1\" file=\"a.exe\"/>", "a.exe"},
       {"<DataSet timestep=\"1\" file=\"a.vtu\"/><DataSet timestep=\"1\" file=\"a.vtu\"/>", "at the time 1"},
