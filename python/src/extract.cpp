@@ -264,7 +264,8 @@ AnyContour periodic_contour_of(const AnyImage& image, const std::vector<int>& ax
                                double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
     if constexpr (N <= 4) {
-      return {extract_periodic<Real>(view, periods_of(view.grid(), axes, given), level, options), level};
+      const Image<T, N> samples = periodic_samples(view, axes, given);
+      return {extract_periodic<Real>(samples, periods_of(samples.grid(), axes, given), level, options), level};
     } else {
       throw_dimension("periodic axes", N, "2 to 4 dimensions, or division 'kuhn' or 'symmetric'");
     }
@@ -297,10 +298,14 @@ template <class Real>
 AnyContour curved_contour_of(const AnyImage& image, const std::vector<CurvedAxis>& curved, const std::vector<int>& axes,
                              const std::vector<double>& periods, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
-    if constexpr (N <= 4)
-      return {extract_curved<Real>(view, curved, level, options, seams_of(view.grid(), curved, axes, periods)), level};
-    else
+    if constexpr (N <= 4) {
+      const WithoutRepeated<T, N> kept = without_repeated<T, N>(view, curved, axes, periods);
+      return {extract_curved<Real>(kept.image, kept.curved, level, options,
+                                   seams_of(kept.image.grid(), kept.curved, axes, periods)),
+              level};
+    } else {
       throw_dimension("curved grids", N, "2 to 4 dimensions");
+    }
   });
 }
 
@@ -312,8 +317,9 @@ std::pair<std::uint64_t, std::vector<std::size_t>> find_folds_any(const AnyImage
   return visit_image(
       image, [&]<class T, int N>(const Image<T, N>& view) -> std::pair<std::uint64_t, std::vector<std::size_t>> {
         if constexpr (N <= 4) {
-          const GridFolds<N> folds =
-              find_folds<N>(view.grid(), curved, {}, seams_of(view.grid(), curved, axes, periods));
+          const WithoutRepeated<T, N> kept = without_repeated<T, N>(view, curved, axes, periods);
+          const GridFolds<N> folds = find_folds<N>(kept.image.grid(), kept.curved, {},
+                                                   seams_of(kept.image.grid(), kept.curved, axes, periods));
           return {folds.cells, {folds.first.begin(), folds.first.end()}};
         } else {
           throw_dimension("curved grids", N, "2 to 4 dimensions");
@@ -328,7 +334,7 @@ void continue_longitudes_any(py::array_t<double, py::array::c_style>& values, co
 std::vector<int> longitude_axes_any(const AnyImage& image, const CurvedAxes& given) {
   const std::vector<CurvedAxis> curved = curved_axes(given);
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> std::vector<int> {
-    return longitude_axes<N>(view.grid(), curved);
+    return longitude_axes<T, N>(view, curved);
   });
 }
 
@@ -354,7 +360,9 @@ AnyContour lattice_contour_of(const AnyImage& image, Lattice lattice, const std:
                               const std::vector<double>& periods, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
     if constexpr (N <= 4) {
-      return {extract_lattice<Real>(view, lattice, level, options, periods_of(view.grid(), axes, periods)), level};
+      const Image<T, N> samples = periodic_samples(view, axes, periods);
+      return {extract_lattice<Real>(samples, lattice, level, options, periods_of(samples.grid(), axes, periods)),
+              level};
     } else {
       throw_dimension("lattices", N, "2 to 4 dimensions");
     }
@@ -382,7 +390,8 @@ template <class Real>
 AnyContour divided_contour_of(const AnyImage& image, Division division, const std::vector<int>& axes,
                               const std::vector<double>& periods, double level, const ExtractOptions& options) {
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> AnyContour {
-    return {extract_divided<Real>(view, division, level, options, periods_of(view.grid(), axes, periods)), level};
+    const Image<T, N> samples = periodic_samples(view, axes, periods);
+    return {extract_divided<Real>(samples, division, level, options, periods_of(samples.grid(), axes, periods)), level};
   });
 }
 
@@ -422,7 +431,8 @@ std::pair<std::uint64_t, std::uint64_t> count_any(const AnyImage& image, const s
                                                   const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
-  const auto of_view = [&]<class T, int N>(const Image<T, N>& view) -> ContourSize {
+  const auto of_view = [&]<class T, int N>(const Image<T, N>& given) -> ContourSize {
+    const Image<T, N> view = periodic_samples(given, axes, periods);
     if (axes.empty() && lattice.empty() && division.empty()) return count(view, level, options);
     if (!division.empty())
       return count_divided(view, named<Division>("division", division, divisions()), level, options,

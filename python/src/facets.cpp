@@ -28,8 +28,9 @@ std::unique_ptr<AnyFacets> extract_facets_any(const AnyImage& image, const std::
                                               const py::dict& arguments, const py::object& progress) {
   Call call(progress);
   const ExtractOptions options = extract_options(arguments, call);
-  const auto of_view = [&]<class T, int N>(const Image<T, N>& view) -> std::unique_ptr<AnyFacets> {
+  const auto of_view = [&]<class T, int N>(const Image<T, N>& given_image) -> std::unique_ptr<AnyFacets> {
     if constexpr (N <= 4) {
+      const Image<T, N> view = periodic_samples(given_image, axes, periods);
       const AxisPeriods<N> given = periods_of(view.grid(), axes, periods);
       const auto extracted = [&]<class Real>(Real) {
         if (!division.empty()) {

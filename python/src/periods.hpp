@@ -13,6 +13,12 @@
 
 namespace tegl::python {
 
+/// A view of an image without the samples at the end of these axes that repeat the first ones. `given`: as below.
+template <Value T, int N>
+Image<T, N> periodic_samples(const Image<T, N>& image, const std::vector<int>& axes, const std::vector<double>& given) {
+  return without_repeated<T, N>(image, {}, axes, given).image;
+}
+
 /// The periods of axes: those given, or else `default_periods` (NaN).
 template <int N>
 AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<int>& axes, const std::vector<double>& given) {

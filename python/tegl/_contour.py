@@ -287,9 +287,10 @@ class Contour(ArrayOrdered):
             unit = self.axis_units[self.time_axis]
             given = list(at) if _results.is_list(at) else [at]
             places = [_arguments.number_on_axis(place, unit) for place in given]
+            wanted = self._places_within(self.time_axis, places)
             if not allow_empty and self.ndim > 2:
-                self._require_places(self.time_axis, places, given)
-            size, content = _tegl.measure_cuts(self._core, places, _arguments.threads_of(threads), progress)
+                self._require_places(self.time_axis, wanted, given)
+            size, content = _tegl.measure_cuts(self._core, wanted, _arguments.threads_of(threads), progress)
             return CutMeasures(np.array(places), np.array(size), np.array(content))
         found = _tegl.measure(self._core, shared, _arguments.threads_of(threads), progress)
         for name in ("centroid", "lowest", "highest"):
@@ -417,7 +418,7 @@ class Contour(ArrayOrdered):
             places = _tegl.even_times(float(along.min()), float(along.max()), count) if len(along) else []
         else:
             given = _arguments.as_list("times", times, "a list of times, or a whole number of even ones")
-            places = [_arguments.number_on_axis(time, unit) for time in given]
+            places = self._places_within(self.time_axis, [_arguments.number_on_axis(time, unit) for time in given])
             if not allow_empty:
                 self._require_places(self.time_axis, places, given)
         found = _tegl.track(self._core, _arguments.as_number("min_lifetime", min_lifetime), places,

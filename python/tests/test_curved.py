@@ -2,6 +2,7 @@
 """Curved grids: coordinates in arrays, as points and in a CurvedGrid."""
 
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -270,3 +271,91 @@ def test_structured_grids_of_collections_move_over_time(tmp_path, time_axis):
     own = tegl.contour(turned(image.array), 1.55, curved=curved, coords=coords, periodic=2 if time_axis == 0 else 1,
                        time_axis=time_axis, dtype=float)
     assert own.check().euler == 0 and own.measure().size == pytest.approx(tube.measure().size)
+
+
+#: Of a globe in steps of 6 degrees.
+GLOBE = {"axis_names": ["lat", "lon"], "axis_units": ["degrees_north", "degrees_east"]}
+
+
+def globe(columns):
+    """Values, latitudes and longitudes of a globe of 60 columns, of which the further ones repeat the first ones."""
+    j, i = np.meshgrid(np.arange(30), np.arange(columns), indexing="ij")
+    lon, lat = 6.0 * i, -70 + 4.8 * j
+    values = 20 * np.cos(np.radians(lat)) ** 2 + 3 * np.cos(np.radians(6.0 * (i % 60) - 170))
+    values[3:5, ::60] = np.nan
+    return values, lat, lon
+
+
+def placed(lat, lon, is_curved):
+    return {"curved": {0: lat, 1: lon}} if is_curved else {"coords": [lat[:, 0], lon[0]]}
+
+
+@pytest.mark.parametrize("is_curved", [False, True])
+@pytest.mark.parametrize("repeated", [1, 2])
+def test_longitudes_that_repeat_the_first_ones_are_left_out(is_curved, repeated):
+    values, lat, lon = globe(60 + repeated)
+    expected = tegl.contour(values[:, :60], 12.3, periodic="lon", **placed(lat[:, :60], lon[:, :60], is_curved), **GLOBE)
+    for periodic in ("lon", "longitude", "auto", {"lon": 360}, 1):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")  # no folds
+            found = tegl.contour(values, 12.3, periodic=periodic, **placed(lat, lon, is_curved), **GLOBE)
+        assert np.array_equal(found.vertices, expected.vertices) and np.array_equal(found.periods, expected.periods)
+        assert np.array_equal(found.simplices, expected.simplices)
+    values[7, 61 if repeated == 2 else 60] += 0.5
+    last = "sample along axis 1 (lon) is" if repeated == 1 else "2 samples along axis 1 (lon) are"
+    with pytest.raises(ValueError, match=re.escape(f"the last {last} at the longitudes of the first") + ".* at the sample "
+                                         + re.escape(f"(7, {59 + repeated}), ")):
+        tegl.contour(values, 12.3, periodic="lon", **placed(lat, lon, is_curved), **GLOBE)
+    assert not len(tegl.contour(values, 12.3, periodic="auto", **placed(lat, lon, is_curved), **GLOBE).periods)
+
+
+def test_repeated_longitudes_are_left_out_in_all_tilings_and_counted():
+    values, lat, lon = globe(62)
+    grids = {"coords": [lat[:, 0], lon[0]], **GLOBE}, {"coords": [lat[:, 0], lon[0, :60]], **GLOBE}
+    for more in ({"lattice": "triangular"}, {"division": "kuhn"}):
+        long, short = (tegl.contour(v, 12.3, periodic="lon", **more, **grid) for v, grid in zip((values, values[:, :60]), grids))
+        assert np.array_equal(long.vertices, short.vertices) and len(long.periods) == 1
+    counts = [tegl.count(v, 12.3, periodic="lon", **grid) for v, grid in zip((values, values[:, :60]), grids)]
+    assert counts[0] == counts[1]
+    facets = [tegl.contour_facets(v, 12.3, periodic="lon", **grid) for v, grid in zip((values, values[:, :60]), grids)]
+    assert np.array_equal(facets[0].vertices, facets[1].vertices)
+
+
+@pytest.mark.parametrize("is_curved", [False, True])
+def test_longitudes_of_a_region_are_not_periodic(is_curved):
+    values, lat, lon = (one[:, :20] for one in globe(60))
+    with pytest.raises(ValueError, match="longitudes.*span 114"):
+        tegl.contour(values, 12.3, periodic="lon", **placed(lat, lon, is_curved), **GLOBE)
+
+
+def test_longitudes_of_an_affine_map_are_those_of_the_world():
+    values, lat, lon = globe(60)
+    expected = tegl.contour(values, 12.3, periodic="lon", coords=[lat[:, 0], lon[0]], dtype=np.float64, **GLOBE)
+    affine = np.array([[4.8, 0, -70], [0, 6, 0]])
+    for periodic in ("lon", "auto"):
+        found = tegl.contour(values, 12.3, periodic=periodic, affine=affine, dtype=np.float64, **GLOBE)
+        assert np.allclose(found.periods, [[0, 360]]) and np.allclose(found.vertices, expected.vertices)
+    values, lat, lon = globe(61)
+    found = tegl.contour(values, 12.3, periodic="lon", affine=affine, dtype=np.float64, **GLOBE)
+    assert np.allclose(found.periods, [[0, 360]]) and np.allclose(found.vertices, expected.vertices)
+    # half of the globe, whose 360 columns have the indices of the whole one
+    half = np.tile(values, 6)[:, :360]
+    affine[1, 1] = 0.5
+    assert not len(tegl.contour(half, 12.3, periodic="auto", affine=affine, **GLOBE).periods)
+    with pytest.raises(ValueError, match="longitudes grow along axis 0 .lat. and axis 1 .lon.|along axis 1 .lon. and axis 0 .lat."):
+        tegl.contour(half, 12.3, periodic="lon", affine=[[4.8, 0, -70], [0.1, 1, 0]], **GLOBE)
+
+
+def test_measures_take_longitudes_a_turn_away_as_slices_do():
+    z, y, lon = np.ogrid[0:5, 0:6, 0:36]
+    values = np.cos(lon * np.pi / 18) - 0.1 * z + 0.05 * y
+    found = tegl.contour(values, 0.3, axis_names=["z", "lat", "lon"], axis_units=["m", "degrees_north", "degrees_east"],
+                         coords=[np.arange(5), np.arange(6), np.arange(36) * 10.0], time_axis=-1)
+    expected = found.measure(at=75)
+    for place in (435, -285):
+        cut = found.measure(at=place)
+        assert cut.size == expected.size and cut.at == place
+    assert found.measure(at=[75, 435]).size[1] == expected.size
+    assert len(found.track(times=[75, 80]).segments) == len(found.track(times=[435, 440]).segments)
+    with pytest.raises(ValueError, match="expected a place between 0.0 and 350.0"):
+        found.measure(at=355)

@@ -612,8 +612,8 @@ TEST_F(PeriodicCommand, LongitudesAreFoundByTheirUnitAndSpan) {
     EXPECT_EQ(remarks({"--periodic", name}), "");
     EXPECT_EQ(read_mesh(output).periods.at(0), 360.0) << name;
   }
-  write_longitudes([](std::size_t i) { return 360.0 / 35 * static_cast<double>(i); });
-  expect_refused_of(file, {"--periodic", "lon", "-o", output}, "is not more than 360, the span of its samples");
+  write_longitudes([](std::size_t i) { return 361.0 / 35 * static_cast<double>(i); });
+  expect_refused_of(file, {"--periodic", "lon", "-o", output}, "is not more than 361, the span of its samples");
 }
 
 TEST_F(PeriodicCommand, SlicesAtTimesFindLongitudes) {

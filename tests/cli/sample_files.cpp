@@ -174,22 +174,25 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
   require(nc_close(file));
 }
 
-void write_curved_globe(const std::string& path, const char* longitudes, bool is_turned) {
-  constexpr std::size_t kLon = 36, kLat = 17;
+void write_curved_globe(const std::string& path, const char* longitudes, bool is_turned, std::size_t repeated) {
+  constexpr std::size_t kAround = 36, kLat = 17;
+  const std::size_t columns = kAround + repeated;
   std::vector<double> lon, lat, values;
-  for (std::size_t s = 0; s < kLon * kLat; ++s) {
-    const auto along = static_cast<double>(is_turned ? s / kLat : s % kLon);
-    const auto up = static_cast<double>(is_turned ? s % kLat : s / kLon);
+  for (std::size_t s = 0; s < columns * kLat; ++s) {
+    const std::size_t column = is_turned ? s / kLat : s % columns;
+    const auto along = static_cast<double>(column % kAround);
+    const auto up = static_cast<double>(is_turned ? s % kLat : s / columns);
     lon.push_back(-175.0 + 10.0 * along + 0.1 * up);
     lat.push_back(-80.0 + 10.0 * up + std::sin(along / 36.0 * 2.0 * std::numbers::pi));
     const double away = lon.back() - 180.0 - 360.0 * std::round((lon.back() - 180.0) / 360.0);
     values.push_back(40.0 - std::hypot(away, lat.back()));
+    if (column >= kAround) lon.back() += 360.0;
   }
   int file = 0, variable = 0;
   std::array<int, 2> dimensions{};
   require(nc_create(path.c_str(), NC_CLOBBER, &file));
   require(nc_def_dim(file, "j", kLat, &dimensions[is_turned ? 1 : 0]));
-  require(nc_def_dim(file, "i", kLon, &dimensions[is_turned ? 0 : 1]));
+  require(nc_def_dim(file, "i", columns, &dimensions[is_turned ? 0 : 1]));
   const auto define = [&](const char* name, const char* attribute, const std::string& text) {
     require(nc_def_var(file, name, NC_DOUBLE, 2, dimensions.data(), &variable));
     require(nc_put_att_text(file, variable, attribute, text.size(), text.c_str()));

@@ -470,7 +470,7 @@ class ContourCommand final : public Command {
         if (result.facets[0] == 0) remark(remark_without_contour(mesh.mesh, result.isovalue));
       return tell(streams, of_mesh);
     }
-    const ReadImageResult input = with_option_to_4d("--facets", [&] { return read(bar.stage("read")); });
+    ReadImageResult input = with_option_to_4d("--facets", [&] { return read(bar.stage("read")); });
     given_.refuse_tiling_of_file(input.info, file());
     Tiling tiling = given_.extraction.tiling();
     given_.extraction.take_lattice(input.info, file(), tiling);
@@ -486,6 +486,7 @@ class ContourCommand final : public Command {
       require_contour(input, result.isovalue, given_.extraction.allows_empty(), tiling.lattice);
     }
     remark(take_longitudes(input.image, given_.extraction, tiling));
+    remark(leave_out_repeated(input.image, tiling));
     results.front().seconds.read = watch.lap();
     WrittenFiles written;
     write_image_facets(

@@ -19,6 +19,7 @@
 #include "input/cuts.hpp"
 #include "output/output.hpp"
 #include "tegl/io/text.hpp"
+#include "tegl/periodic.hpp"
 #include "tegl/slice.hpp"
 
 namespace tegl::cli {
@@ -118,6 +119,7 @@ class MeasureCommand final : public ContourInputCommand {
     if constexpr (N >= 3) {
       if (cuts.empty() && (samples_ == 0 || contour.simplices.empty())) return found;
       CutAxis extent{input.axis_name(N - 1), whole.lowest[N - 1], whole.highest[N - 1]};
+      extent.is_longitude = is_longitude_unit(input.axis_unit(N - 1));
       CutAxis axis = input.last_axis.value_or(extent);
       const bool is_wrapped = cuts_wrapped(contour.periods, Hyperplane<N>::across(N - 1, 0.0));
       if (is_wrapped && !contour.periods.empty()) {
@@ -166,11 +168,12 @@ class MeasureCommand final : public ContourInputCommand {
   }
 
   /// Throws unless the cut is within the last axis of the image or mesh, or within a saved contour, which may come from
-  /// a file with floats. A periodic axis has every place.
+  /// a file with floats; longitudes by turns of 360. A periodic axis has every place.
   static void require_within(const Cut& cut, const CutAxis& axis, const ContourInput& input) {
     if (axis.period > 0.0) return;
     const auto single = [](double x) { return static_cast<float>(x); };
-    if (single(cut.value) >= single(axis.first) && single(cut.value) <= single(axis.last)) return;
+    const float place = single(within_period(axis, cut.value));
+    if (place >= single(axis.first) && place <= single(axis.last)) return;
     throw outside_error(cut, axis, input.last_axis ? input.last_axis_of : "saved contour");
   }
 

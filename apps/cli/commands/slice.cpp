@@ -376,6 +376,8 @@ class SliceCommand final : public Command {
       return std::nullopt;  // not a format with layers, or reading reports the error
     }
     if (options_.has_lattice(input.info)) return std::nullopt;  // cells of a lattice extend over more layers
+    if (options_.finds_longitudes() && has_repeated_longitudes(input.layers))
+      return std::nullopt;  // values are compared
     Tiling tiling = options_.tiling();
     const std::string on_longitudes = take_longitudes(input.layers, options_, tiling);
     if (!tiling.is_plain()) return std::nullopt;  // cuts of wrapped contours

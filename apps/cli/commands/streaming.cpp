@@ -20,6 +20,7 @@
 #include "input/ranged_layers.hpp"
 #include "io/meshes/contour_file.hpp"
 #include "output/output.hpp"
+#include "tegl/curved.hpp"
 #include "tegl/stream.hpp"
 
 namespace tegl::cli {
@@ -92,9 +93,27 @@ std::vector<ExtractedSize> extract_all(LayerReader<T, N>& layers, std::span<cons
   return extract_lattice_streamed_several<Real>(layers, *options.lattice, contours, options.extract, periods);
 }
 
+/// Throws InvalidArgument for axes of --periodic with samples that repeat the first ones, whose values are not known.
+template <int N>
+void refuse_repeated(const Grid<N>& grid, const std::vector<std::string>& periodic) {
+  const NamedPeriods named = named_periods(grid, {}, periodic);
+  for (std::size_t i = 0; i < named.axes.size(); ++i) {
+    const int a = named.axes[i];
+    if ((!std::isnan(named.periods[i]) && named.periods[i] != 360.0) || repeated_longitudes<N>(grid, {}, a) == 0)
+      continue;
+    const auto axis = static_cast<std::size_t>(a);
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("--stream with --periodic {}, whose last samples are at the longitudes of the first, 360 "
+                    "degrees further; expected it without --stream, which leaves them out, or a file without them",
+                    axis_label(grid.axes[axis].name, axis)));
+  }
+}
+
 template <class Real, class T, int N>
 std::vector<std::string> stream_typed(LayerReader<T, N>& source, const std::string& unit, const StreamOptions& options,
                                       std::vector<ContourResult>& results) {
+  refuse_repeated<N>(source.grid(), options.periodic);
   const AxisPeriods<N> periods = periods_of(source.grid(), options.periodic);
   StreamedFiles<N, Real> files(source.grid(), periods, options, results);
   const auto [least, most] = isovalue_range(results);

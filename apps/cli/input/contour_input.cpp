@@ -68,11 +68,15 @@ std::vector<std::string> take_grid(ReadImageResult& input, const std::string& fi
   if (options.samples_are_as_in_file()) tiling.of_cells = input.info.samples_are_cells;
   if (tiling.of_cells) tiling.cell_faces = input.info.cell_faces;
   options.take_lattice(input.info, file, tiling);
-  if (input.info.curved.empty()) return {take_longitudes(input.image, options, tiling)};
+  if (input.info.curved.empty()) {
+    const std::string remark = take_longitudes(input.image, options, tiling);
+    return {remark, leave_out_repeated(input.image, tiling)};
+  }
   options.refuse_lattice(input.info, file, "the curved grid of " + file);
   options.refuse_other_tiling("the curved grid of " + file);
   tiling.curved = std::move(input.info.curved);
   const std::string remark = take_longitudes(input.image, options, tiling);
+  const std::string left_out = leave_out_repeated(input.image, tiling);
   const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) -> std::string {
     const GridFolds<N> folds =
         find_folds<N>(owned.grid, tiling.curved, {}, seams_of(owned.grid, tiling.curved, tiling.periodic));
@@ -82,7 +86,60 @@ std::vector<std::string> take_grid(ReadImageResult& input, const std::string& fi
         "the curved grid is folded in {}, the first at the sample ({}): the contour may overlap itself there",
         counted(folds.cells, "cell", "cells"), fmt::join(folds.first, ", "));
   };
-  return {remark, std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, input.image)};
+  return {remark, left_out, std::visit([&](const auto& typed) { return std::visit(of_owned, typed); }, input.image)};
+}
+
+namespace {
+
+/// Leaves out the last `count` samples along an axis.
+template <Value T, int N>
+void leave_out(OwnedImage<T, N>& owned, std::size_t axis, std::size_t count) {
+  Axis& along = owned.grid.axes[axis];
+  std::size_t row = 1;
+  for (std::size_t a = 0; a < axis; ++a) row *= owned.grid.axes[a].size();
+  const std::size_t block = row * along.size(), kept = block - row * count;
+  T* const values = owned.values.data();
+  std::size_t end = 0;
+  for (std::size_t first = 0; first < owned.values.size(); first += block, end += kept)
+    std::copy(values + first, values + first + kept, values + end);
+  owned.values.resize(end);
+  along = along.part(0, along.size() - count);
+}
+
+}  // namespace
+
+std::string leave_out_repeated(AnyImage& image, Tiling& tiling) {
+  if (tiling.periodic.empty()) return "";
+  const auto of_owned = [&]<Value T, int N>(OwnedImage<T, N>& owned) {
+    const NamedPeriods named = named_periods(owned.grid, tiling.curved, tiling.periodic);
+    const auto is_longer = [&](int a) { return repeated_longitudes<N>(owned.grid, tiling.curved, a) > 0; };
+    if (std::none_of(named.axes.begin(), named.axes.end(), is_longer)) return std::string();  // copies no coordinates
+    WithoutRepeated<T, N> kept = without_repeated<T, N>(owned.view(), tiling.curved, named.axes, named.periods);
+    tiling.curved = std::move(kept.curved);
+    std::vector<std::string> texts;
+    for (std::size_t a = 0; a < N; ++a) {
+      const std::size_t count = kept.left_out[a];
+      if (count == 0) continue;
+      leave_out(owned, a, count);
+      const std::string name = axis_label(owned.grid.axes[a].name, a);
+      texts.push_back(
+          count == 1
+              ? fmt::format("the last sample along {} repeats the first one, so it is left out", name)
+              : fmt::format("the last {} samples along {} repeat the first ones, so they are left out", count, name));
+    }
+    return fmt::format("{}", fmt::join(texts, "; "));
+  };
+  return std::visit([&](auto& typed) { return std::visit(of_owned, typed); }, image);
+}
+
+bool has_repeated_longitudes(const AnyLayers& layers) {
+  const auto of_one = []<Value T, int N>(const std::unique_ptr<LayerReader<T, N>>& one) {
+    const Grid<N> grid = one->grid();
+    bool any = false;
+    for (int a = 0; a < N && !any; ++a) any = repeated_longitudes<N>(grid, {}, a) > 0;
+    return any;
+  };
+  return std::visit([&](const auto& typed) { return std::visit(of_one, typed); }, layers);
 }
 
 CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved,

@@ -13,6 +13,8 @@
 #include "input/extraction.hpp"
 #include "output/result.hpp"
 #include "tegl/contour.hpp"
+#include "tegl/curved.hpp"
+#include "tegl/io/layers.hpp"
 #include "tegl/io/meshes.hpp"
 
 namespace tegl::cli {
@@ -46,8 +48,9 @@ decltype(auto) visit_to_4d(Any& contour, const F& f) {
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options);
 
 /// Takes what the file says of its cells to the tiling: whether samples are cells, if the options ask for it, and the
-/// coordinates of a curved grid, and longitudes for --periodic auto. Sets the number of folded cells of a curved grid,
-/// and returns remarks on them and on longitudes. Throws InvalidArgument for options that choose other tilings.
+/// coordinates of a curved grid, and longitudes for --periodic auto. Leaves out samples as leave_out_repeated. Sets the
+/// number of folded cells of a curved grid, and returns remarks on them and on longitudes. Throws InvalidArgument for
+/// options that choose other tilings.
 std::vector<std::string> take_grid(ReadImageResult& input, const std::string& file, const ExtractionOptions& options,
                                    Tiling& tiling, std::optional<std::uint64_t>& folded_cells);
 /// ExtractionOptions::take_longitudes for an image, or the readers of its layers.
@@ -55,12 +58,17 @@ template <class Any>
 std::string take_longitudes(const Any& image, const ExtractionOptions& options, Tiling& tiling) {
   const auto of_one = [&](const auto& one) {
     if constexpr (requires { one.grid; })
-      return options.take_longitudes(one.grid, tiling);
+      return options.take_longitudes(one.grid, longitude_axes(one.view(), tiling.curved), tiling);
     else
-      return options.take_longitudes(one->grid(), tiling);
+      return options.take_longitudes(one->grid(), longitude_axes(one->grid(), tiling.curved), tiling);
   };
   return std::visit([&](const auto& typed) { return std::visit(of_one, typed); }, image);
 }
+/// Leaves out the samples that repeat the first ones of axes of --periodic (`without_repeated`), of the image and of
+/// the tiling's curved grid. Returns a remark on them, or an empty text. Throws InvalidArgument if their values differ.
+std::string leave_out_repeated(AnyImage& image, Tiling& tiling);
+/// Whether an image has samples that leave_out_repeated would leave out if their values are equal.
+bool has_repeated_longitudes(const AnyLayers& layers);
 /// The space of an image with the ranges of its curved coordinates. `periodic`: the axes of --periodic.
 CutSpace space_of(const AnyImage& image, const std::vector<CurvedAxis>& curved,
                   const std::vector<std::string>& periodic = {});

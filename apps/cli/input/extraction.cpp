@@ -180,6 +180,14 @@ namespace {
 template <int N>
 std::string hint_on_longitudes(const Grid<N>& grid, const std::vector<CurvedAxis>& curved) {
   constexpr std::string_view kEnd = ", so no axis is periodic";
+  for (std::size_t a = 0; a < N; ++a)
+    if (const std::size_t count = repeated_longitudes<N>(grid, curved, static_cast<int>(a)); count > 0)
+      return fmt::format(
+          "{}: the last {} along {} at the longitudes of the first, 360 degrees further; --periodic {} leaves out the "
+          "last {}, except with --stream, if the values are equal",
+          kEnd, count == 1 ? "sample" : fmt::format("{} samples", count),
+          axis_label(grid.axes[a].name, a) + (count == 1 ? " is" : " are"), axis_label(grid.axes[a].name, a),
+          count == 1 ? "one" : "ones");
   for (const CurvedAxis& one : curved)
     if (is_longitude_unit(one.unit))
       return fmt::format(
@@ -196,12 +204,13 @@ std::string hint_on_longitudes(const Grid<N>& grid, const std::vector<CurvedAxis
 }  // namespace
 
 template <int N>
-std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tiling) const {
+std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, const std::vector<int>& around,
+                                               Tiling& tiling) const {
   const bool finds = finds_longitudes();
   const bool may_be_periodic = periodic_.empty() && !tiling.of_cells;
   if (!finds && !may_be_periodic) return "";
   std::vector<std::string> names;
-  for (const int a : longitude_axes<N>(grid, tiling.curved)) {
+  for (const int a : around) {
     const auto axis = static_cast<std::size_t>(a);
     names.push_back(axis_label(grid.axes[axis].name, axis));
   }
@@ -217,9 +226,9 @@ std::string ExtractionOptions::take_longitudes(const Grid<N>& grid, Tiling& tili
       knows_periods(tiling) ? "--periodic auto continues it across, " : "");
 }
 
-template std::string ExtractionOptions::take_longitudes(const Grid<2>&, Tiling&) const;
-template std::string ExtractionOptions::take_longitudes(const Grid<3>&, Tiling&) const;
-template std::string ExtractionOptions::take_longitudes(const Grid<4>&, Tiling&) const;
+template std::string ExtractionOptions::take_longitudes(const Grid<2>&, const std::vector<int>&, Tiling&) const;
+template std::string ExtractionOptions::take_longitudes(const Grid<3>&, const std::vector<int>&, Tiling&) const;
+template std::string ExtractionOptions::take_longitudes(const Grid<4>&, const std::vector<int>&, Tiling&) const;
 
 void ExtractionOptions::refuse_periodic_with(const std::string& other) const {
   if (!periodic().empty())
@@ -475,7 +484,10 @@ std::vector<int> axes_of_names(const Grid<N>& grid, const std::vector<CurvedAxis
   for (const CurvedAxis& one : curved) axes.push_back(one.axis);
   for (std::size_t c = 0; c < curved.size(); ++c) {
     if (!is_longitude_unit(curved[c].unit)) continue;
-    std::vector<int> around = longitude_axes<N>(grid, std::span(&curved[c], 1));
+    const std::span<const CurvedAxis> one(&curved[c], 1);
+    std::vector<int> around = longitude_axes<N>(grid, one);
+    for (int a = 0; a < N; ++a)
+      if (repeated_longitudes<N>(grid, one, a) > 0) around.push_back(a);
     std::erase_if(around, [&](int a) { return (curved[c].along >> a & 1u) == 0; });
     if (around.size() != 1) continue;
     std::replace(axes.begin(), axes.end(), around.front(), axes[c]);
@@ -487,19 +499,10 @@ std::vector<int> axes_of_names(const Grid<N>& grid, const std::vector<CurvedAxis
 }  // namespace
 
 template <int N>
-AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names) {
-  AxisPeriods<N> periods{};
-  for (const NamedPeriod& one : named_periods(names_of_axes(grid), names)) {
-    const auto axis = static_cast<std::size_t>(one.axis);
-    periods[axis] = one.period ? *one.period : default_periods(grid, std::span(&one.axis, 1))[axis];
-  }
-  return periods;
-}
-
-template <int N>
-std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
-                                    const std::vector<std::string>& names) {
-  if (names.empty()) return {};
+NamedPeriods named_periods(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
+                           const std::vector<std::string>& names) {
+  NamedPeriods result;
+  if (names.empty()) return result;
   std::vector<AxisNames> named_axes = names_of_axes(grid);
   const std::vector<int> of_names = axes_of_names(grid, curved);
   for (std::size_t c = 0; c < curved.size(); ++c) {
@@ -508,18 +511,36 @@ std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<Curve
     axis.is_longitude = axis.is_longitude || is_longitude_unit(one.unit);
     if (!one.name.empty() && one.name != axis.names.front()) axis.names.push_back(one.name);
   }
-  std::vector<int> axes;
-  std::vector<double> periods;
   for (const NamedPeriod& named : named_periods(named_axes, names)) {
-    if (named.period && !(*named.period > 0.0))
-      throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--periodic with the period {}; expected a positive one", *named.period));
-    axes.push_back(named.axis);
-    periods.push_back(named.period.value_or(std::numeric_limits<double>::quiet_NaN()));
+    result.axes.push_back(named.axis);
+    result.periods.push_back(named.period.value_or(std::numeric_limits<double>::quiet_NaN()));
   }
-  return find_seams<N>(grid, curved, axes, periods);
+  return result;
 }
 
+template <int N>
+AxisPeriods<N> periods_of(const Grid<N>& grid, const std::vector<std::string>& names) {
+  AxisPeriods<N> periods{};
+  const NamedPeriods named = named_periods(grid, {}, names);
+  for (std::size_t i = 0; i < named.axes.size(); ++i) {
+    const auto axis = static_cast<std::size_t>(named.axes[i]);
+    const bool is_given = !std::isnan(named.periods[i]);
+    periods[axis] = is_given ? named.periods[i] : default_periods(grid, std::span(&named.axes[i], 1))[axis];
+  }
+  return periods;
+}
+
+template <int N>
+std::vector<CurvedSeam<N>> seams_of(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
+                                    const std::vector<std::string>& names) {
+  if (names.empty()) return {};
+  const NamedPeriods named = named_periods(grid, curved, names);
+  return find_seams<N>(grid, curved, named.axes, named.periods);
+}
+
+template NamedPeriods named_periods(const Grid<2>&, const std::vector<CurvedAxis>&, const std::vector<std::string>&);
+template NamedPeriods named_periods(const Grid<3>&, const std::vector<CurvedAxis>&, const std::vector<std::string>&);
+template NamedPeriods named_periods(const Grid<4>&, const std::vector<CurvedAxis>&, const std::vector<std::string>&);
 template std::vector<CurvedSeam<2>> seams_of(const Grid<2>&, const std::vector<CurvedAxis>&,
                                              const std::vector<std::string>&);
 template std::vector<CurvedSeam<3>> seams_of(const Grid<3>&, const std::vector<CurvedAxis>&,

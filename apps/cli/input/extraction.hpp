@@ -82,9 +82,10 @@ class ExtractionOptions {
   /// Whether --periodic is auto.
   [[nodiscard]] bool finds_longitudes() const;
   /// With --periodic auto, takes the longitudes that run around the globe to the tiling, of which curved axes are
-  /// known. Returns a remark on them, or on those that end at both ends without --periodic, or an empty text.
+  /// known. `around`: their axes. Returns a remark on them, or on those that end at both ends without --periodic, or an
+  /// empty text.
   template <int N>
-  [[nodiscard]] std::string take_longitudes(const Grid<N>& grid, Tiling& tiling) const;
+  [[nodiscard]] std::string take_longitudes(const Grid<N>& grid, const std::vector<int>& around, Tiling& tiling) const;
   /// Whether the samples are on a lattice, of --lattice or of the file.
   [[nodiscard]] bool has_lattice(const ImageInfo& info) const {
     return lattice_.empty() ? info.lattice.has_value() : has_lattice();
@@ -190,6 +191,16 @@ std::string remark_without_contour(const Image& image, double isovalue) {
 /// or, in 4D, missing values. `of_samples`: the result of require_contour. Reads the samples of 4D images of real
 /// numbers.
 std::string reason_of_zero_size(const AnyImage& image, double of_samples, double epsilon);
+
+/// Axes, and for each of them its period in its own unit; NaN: none is given.
+struct NamedPeriods {
+  std::vector<int> axes = {};
+  std::vector<double> periods = {};
+};
+/// The axes that --periodic names, as periods_of and seams_of take them. Throws as these do.
+template <int N>
+NamedPeriods named_periods(const Grid<N>& grid, const std::vector<CurvedAxis>& curved,
+                           const std::vector<std::string>& names);
 
 /// The periods that --periodic names: axes by name, letter or `longitude`, `all`, or NAME=PERIOD, but not auto or none.
 /// Throws InvalidArgument, with all names, for others.

@@ -56,22 +56,53 @@ using CurvedSeams = std::type_identity_t<std::span<const CurvedSeam<N>>>;
 
 /// The periods of `axes` that are given without a number: 360 for those with a unit of longitudes, whether even or not,
 /// and those of `sample_periods` for others. Errors: as `sample_periods`; InvalidArgument for longitudes that span 360
-/// degrees or more, as if the first sample is repeated at the end, and for longitudes with a gap of 180 degrees or
-/// more, also between the last sample and the first one.
+/// degrees or more, as if the first sample is repeated at the end (`without_repeated`), for longitudes with a gap of
+/// 180 degrees or more, also between the last sample and the first one, and for longitudes that the world map mixes
+/// with other axes. A world map that scales them is taken into account: the period is then 360 in the world.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] AxisPeriods<N> default_periods(const Grid<N>& grid, std::span<const int> axes);
 
 /// The seams of these axes. Vectors are 360 for coordinates with a unit of degrees_east (or another as in
-/// `longitude_periods`) that the seam continues, and the periods of `default_periods` for axes that are not curved;
-/// otherwise 0. `periods`, if any, has a number for each of the axes: the length of the seam along the axis's own
-/// coordinate, in the direction in which that grows, or NaN for the vector above. Errors: InvalidGrid (as
-/// `extract_curved`, and an axis that the grid does not have); InvalidArgument (as `default_periods`; another number of
-/// periods; one not positive and finite, or not more than twice the mean step across the seam, as in another unit).
+/// `longitude_periods`) that grow by 180 degrees or more along the axis, in the mean of all rows, and the periods of
+/// `default_periods` for axes that are not curved; otherwise 0. `periods`, if any, has a number for each of the axes:
+/// the length of the seam along the axis's own coordinate, in the direction in which that grows, or NaN for the vector
+/// above. Errors: InvalidGrid (as `extract_curved`, and an axis that the grid does not have); InvalidArgument (as
+/// `default_periods`; another number of periods; one not positive and finite, or not more than twice the mean step
+/// across the seam, as in another unit; without a given period, longitudes that grow by 360 degrees or more, and those
+/// of a region: a seam to the places of the first samples that is much longer than all steps along the axis).
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,
                                                     std::span<const int> axes, std::span<const double> periods = {});
+
+/// The number of samples at the end of an axis that repeat the first ones a full turn further, as in global ocean
+/// grids: longitudes (by the unit, of the axis or of curved coordinates) 360 degrees from those of the first samples,
+/// to a thousandth of a step, and other curved coordinates equal to theirs; unknown where theirs are. 0 if there are
+/// none, or fewer than three others. Values are not compared. Errors: InvalidGrid (as `extract_curved`; in 5D any
+/// curved axis; an axis that the grid does not have). O(coordinates / samples along the axis) time.
+template <int N>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::size_t repeated_longitudes(const Grid<N>& grid, std::span<const CurvedAxis> curved, int axis);
+
+/// An image, on a curved grid or not, of which samples at the ends of axes are left out.
+template <Value T, int N>
+requires DimensionBetween<N, 2, 5>
+struct WithoutRepeated {
+  Image<T, N> image;                         ///< a view of the other samples
+  std::vector<CurvedAxis> curved = {};       ///< with the coordinates of these samples
+  std::array<std::size_t, N> left_out = {};  ///< number of samples, by axis
+};
+
+/// Leaves out the samples that `repeated_longitudes` counts along these axes, so that the axes can be periodic.
+/// `periods`, if any, has a number for each of the axes: a given period in the axis's unit, or NaN; with another one
+/// than 360 degrees, samples remain. Values are not copied, coordinates are. Errors: as `repeated_longitudes`;
+/// InvalidArgument for samples with other values than those that they repeat, of which it names the first in memory
+/// (missing equals missing). O(coordinates) time, if samples are left out.
+template <Value T, int N>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] WithoutRepeated<T, N> without_repeated(const Image<T, N>& image, std::span<const CurvedAxis> curved,
+                                                     std::span<const int> axes, std::span<const double> periods = {});
 
 /// The axes that run once around the globe: longitudes of `longitude_periods`, and axes along which curved longitudes
 /// (the same units) grow by 360 degrees from the first sample to one step behind the last one, in each row to half a
@@ -80,6 +111,10 @@ requires DimensionBetween<N, 2, 4>
 template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::vector<int> longitude_axes(const Grid<N>& grid, std::span<const CurvedAxis> curved = {});
+/// As above, without the samples at the end that repeat the first ones, if their values are equal (`without_repeated`).
+template <Value T, int N>
+requires DimensionBetween<N, 2, 5>
+[[nodiscard]] std::vector<int> longitude_axes(const Image<T, N>& image, std::span<const CurvedAxis> curved = {});
 
 /// The periods on index_grid(grid, curved) of the seams: for `extract_periodic` there. Errors: InvalidGrid (as
 /// `extract_curved`).

@@ -202,7 +202,7 @@ double mean_growth(const Grid<N>& grid, const CurvedAxis& one, int a) {
 /// all rows with known ends, of which there must be one.
 template <int N>
 bool is_around(const Grid<N>& grid, const CurvedAxis& one, int a) {
-  constexpr double kTurn = 360.0, kOfAStep = 0.5;
+  constexpr double kOfAStep = 0.5;
   const std::size_t size = grid.axes[a].size();
   if (size < 3) return false;
   const std::size_t row = detail::size_along(one, grid, 0, a), block = row * size;
@@ -212,7 +212,7 @@ bool is_around(const Grid<N>& grid, const CurvedAxis& one, int a) {
       const double growth = std::abs(one[first + block - row + i] - one[first + i]);
       if (!std::isfinite(growth)) continue;
       const double step = growth / static_cast<double>(size - 1);
-      if (!(std::abs(kTurn - growth - step) <= kOfAStep * step)) return false;
+      if (!(std::abs(detail::kTurn - growth - step) <= kOfAStep * step)) return false;
       any = true;
     }
   return any;
@@ -230,29 +230,66 @@ double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a
   return growth < 0.0 ? -length : length;
 }
 
-/// Throws InvalidArgument for a length of a seam along a curved axis unless the step across the seam, in the mean of
-/// all rows, has the direction in which the coordinates grow, and is less than half the length. Single rows may have
-/// other steps, as those beside the poles of a tripolar grid.
+/// Throws InvalidArgument for a length of a seam of axis `a` along a curved coordinate unless the step across the seam,
+/// in the mean of all rows, has the direction in which the coordinates grow, and is less than half the length. Single
+/// rows may have other steps, as those beside the poles of a tripolar grid.
 template <int N>
-void require_short_step(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, double length) {
-  for (const CurvedAxis& one : curved) {
-    if (one.axis != a || (one.along >> a & 1u) == 0) continue;
-    constexpr double kRounding = 1e-6;  // of the length: coordinates may be of single precision
-    const double growth = mean_growth(grid, one, a), step = length - growth;
-    if (std::isnan(step) || (step / length > kRounding && step / length < 0.5)) continue;
-    const std::string start = fmt::format("the period of {}, a curved axis, is {}, and ",
-                                          detail::label_of_axis(grid.axes[a], a), std::abs(length));
-    if (std::abs(step) < 0.5 * std::abs(length))
-      throw Error(ErrorCode::InvalidArgument,
-                  start + fmt::format("the last coordinates are {} from the first ones, in the mean of all rows; "
-                                      "expected a longer period, or samples without the last ones, if these repeat "
-                                      "the first ones",
-                                      std::abs(growth)));
+void require_short_step(const Grid<N>& grid, const CurvedAxis& one, int a, double length) {
+  constexpr double kRounding = 1e-6;  // of the length: coordinates may be of single precision
+  const double growth = mean_growth(grid, one, a), step = length - growth;
+  if (std::isnan(step) || (step / length > kRounding && step / length < 0.5)) return;
+  const std::string start = fmt::format("the period of {}, a curved axis, is {}, and ",
+                                        detail::label_of_axis(grid.axes[a], a), std::abs(length));
+  if (std::abs(step) < 0.5 * std::abs(length))
     throw Error(ErrorCode::InvalidArgument,
-                start + fmt::format("the step across the seam is {}, in the mean of all rows; expected less than half "
-                                    "the period, or a period in the unit of the coordinates",
-                                    std::abs(step)));
-  }
+                start + fmt::format("the last coordinates are {} from the first ones, in the mean of all rows; "
+                                    "expected a longer period, or samples without the last ones, if these repeat "
+                                    "the first ones",
+                                    std::abs(growth)));
+  throw Error(ErrorCode::InvalidArgument,
+              start + fmt::format("the step across the seam is {}, in the mean of all rows; expected less than half "
+                                  "the period, or a period in the unit of the coordinates",
+                                  std::abs(step)));
+}
+
+/// The mean over all rows of the longest step along axis `a`; 0 if none is known.
+template <int N>
+double mean_longest_step(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  const std::size_t row = detail::size_along(one, grid, 0, a), block = row * grid.axes[a].size();
+  double sum = 0.0, count = 0.0;
+  for (std::size_t first = 0; first < one.size(); first += block)
+    for (std::size_t i = 0; i < row; ++i) {
+      double longest = 0.0;
+      for (std::size_t at = first + i; at + row < first + block; at += row)
+        longest = std::fmax(longest, std::abs(one[at + row] - one[at]));  // ignores NaN
+      if (longest > 0.0) ++count;
+      sum += longest;
+    }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
+/// Throws InvalidArgument for longitudes that end far from where they begin, as those of a region do: they neither run
+/// around the globe nor return to their places, as along an O-grid around an island.
+template <int N>
+void require_return(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  constexpr double kLonger = 2.001;   // around an island in three steps, the last one may be twice the others
+  constexpr double kRounding = 1e-3;  // degrees
+  const double back = std::abs(mean_growth(grid, one, a));
+  if (!(back > kRounding && back > kLonger * mean_longest_step(grid, one, a))) return;
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("the longitudes along {}, a curved axis, span {}, in the mean of all rows, so they neither run "
+                  "around the globe nor return to the first ones; expected a span of more than 180 and less "
+                  "than 360, or a given period",
+                  detail::label_of_axis(grid.axes[a], a), back));
+}
+
+/// The length of a seam of axis `a` along longitudes: 360 if they grow by 180 or more, in the direction in which they
+/// grow, and otherwise 0.
+template <int N>
+double turn_across(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  const double growth = mean_growth(grid, one, a);
+  return std::abs(growth) >= 0.5 * detail::kTurn ? std::copysign(detail::kTurn, growth) : 0.0;  // 0 for NaN
 }
 
 }  // namespace
@@ -278,13 +315,17 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
     }
     for (const CurvedAxis& one : curved) {
       if ((one.along >> a & 1u) == 0 || !is_longitude_unit(one.unit)) continue;
-      constexpr double kTurn = 360.0;
-      if (const double growth = mean_growth(grid, one, a); std::isfinite(growth))
-        seam.vector[one.axis] = kTurn * std::round(growth / kTurn);
+      const double turn = seam.vector[one.axis] = turn_across(grid, one, a);
+      if (is_given) continue;
+      if (turn != 0.0)
+        require_short_step(grid, one, a, turn);
+      else
+        require_return(grid, one, a);
     }
     if (!is_given) continue;
     seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
-    require_short_step(grid, curved, a, seam.vector[a]);
+    for (const CurvedAxis& one : curved)
+      if (one.axis == a) require_short_step(grid, one, a, seam.vector[a]);
   }
   return seams;
 }

@@ -12,6 +12,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,7 +28,7 @@
 namespace tegl {
 namespace {
 
-constexpr double kTurn = 360.0;
+using detail::kTurn;
 constexpr double kMost = 720.0;  // larger numbers are no places
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
@@ -216,14 +217,28 @@ double turn_of(const Axis& axis, int a, bool may_have_long_steps) {
   return kTurn;
 }
 
+/// The error about longitudes, by the unit of the world's axis, that the world map takes from other axes.
+template <int N>
+[[noreturn]] void refuse_mixed(const Grid<N>& grid, int a) {
+  std::vector<std::string> along;
+  for (int b = 0; b < N; ++b)
+    if (grid.linear[a][b] != 0.0) along.push_back(detail::label_of_axis(grid.axes[b], b));
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("the unit of {} is that of longitudes, but in the world, by the affine map, longitudes grow "
+                          "along {}; expected a given period, in the coordinates before the map, or another axis",
+                          detail::label_of_axis(grid.axes[a], a), fmt::join(along, " and ")));
+}
+
 }  // namespace
 
 template <int N>
 requires DimensionBetween<N, 2, 5> AxisPeriods<N> default_periods(const Grid<N>& grid, std::span<const int> axes) {
   AxisPeriods<N> periods = sample_periods(grid, axes);
   for (const int a : axes) {
-    const Axis& axis = grid.axes[static_cast<std::size_t>(a)];
-    if (is_longitude_unit(axis.unit)) periods[static_cast<std::size_t>(a)] = turn_of(axis, a, N == 5);
+    if (!is_longitude_unit(grid.axes[a].unit)) continue;
+    const std::optional<Axis> axis = detail::axis_in_world(grid, a);
+    if (!axis) refuse_mixed(grid, a);
+    periods[a] = turn_of(*axis, a, N == 5) / std::abs(grid.linear[a][a]);
   }
   return periods;
 }

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <Eigen/LU>
@@ -46,7 +49,7 @@ bool is_longitude(const Axis& axis) {
   const double step = (axis[axis.size() - 1] - axis[0]) / static_cast<double>(axis.size() - 1);
   for (std::size_t i = 1; i < axis.size(); ++i)
     if (std::abs(axis[i] - axis[i - 1] - step) > kTolerance * std::abs(step)) return false;
-  return std::abs(std::abs(step) * static_cast<double>(axis.size()) - 360.0) <=
+  return std::abs(std::abs(step) * static_cast<double>(axis.size()) - detail::kTurn) <=
          kTolerance * static_cast<double>(axis.size()) * std::abs(step);
 }
 
@@ -69,8 +72,10 @@ requires DimensionBetween<N, 2, 5> AxisPeriods<N> sample_periods(const Grid<N>& 
 template <int N>
 requires DimensionBetween<N, 2, 5> AxisPeriods<N> longitude_periods(const Grid<N>& grid) {
   AxisPeriods<N> periods{};
-  for (std::size_t a = 0; a < N; ++a)
-    if (is_longitude(grid.axes[a])) periods[a] = 360.0;
+  for (int a = 0; a < N; ++a) {
+    const std::optional<Axis> axis = detail::axis_in_world(grid, a);
+    if (axis && is_longitude(*axis)) periods[a] = detail::kTurn / std::abs(grid.linear[a][a]);
+  }
   return periods;
 }
 
@@ -85,6 +90,25 @@ namespace detail {
 std::string label_of_axis(const Axis& axis, int number) {
   const std::string name = axis.name.empty() ? std::string(1, "xyztu"[number]) : axis.name;
   return fmt::format("axis {} ({})", number, name);
+}
+
+template <int N>
+std::optional<Axis> axis_in_world(const Grid<N>& grid, int axis) {
+  if (!grid.is_separate(axis)) return std::nullopt;
+  const Axis& own = grid.axes[axis];
+  const double scale = grid.linear[axis][axis], first = grid.offset[axis];
+  if (scale == 1.0 && first == 0.0) return own;
+  Axis moved;
+  if (own.is_uniform()) {
+    moved = Axis::uniform(own.size(), scale * own[0] + first, scale * own.step());
+  } else {
+    std::vector<double> coordinates(own.size());
+    for (std::size_t i = 0; i < own.size(); ++i) coordinates[i] = scale * own[i] + first;
+    moved = Axis::rectilinear(std::move(coordinates));
+  }
+  moved.name = own.name;
+  moved.unit = own.unit;
+  return moved;
 }
 
 std::string too_long_steps(const Axis& axis, int number, double period, int steps) {
@@ -154,6 +178,7 @@ std::vector<Period<N>> world_periods(const Grid<N>& grid, const AxisPeriods<N>& 
 }
 
 #define TEGL_INSTANTIATE_PERIODS(N)                                                             \
+  template std::optional<Axis> axis_in_world<N>(const Grid<N>&, int);                           \
   template void check_periods<N>(const Grid<N>&, const AxisPeriods<N>&, const ExtractOptions&); \
   template std::vector<Period<N>> world_periods<N>(const Grid<N>&, const AxisPeriods<N>&);
 TEGL_INSTANTIATE_PERIODS(2)

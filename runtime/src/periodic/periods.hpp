@@ -3,6 +3,7 @@
 // Checks of periodic axes, and their periods in the world.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,15 @@
 
 namespace tegl::detail {
 
+inline constexpr double kTurn = 360.0;  ///< longitudes repeat after it, in degrees
+
 /// An axis in messages, such as "axis 0 (lon)"; one without a name is x, y, z or t.
 [[nodiscard]] std::string label_of_axis(const Axis& axis, int number);
+
+/// An axis with its coordinates in the world, where its unit is that of longitudes; none if the world map mixes it with
+/// others, or puts others in its place.
+template <int N>
+[[nodiscard]] std::optional<Axis> axis_in_world(const Grid<N>& grid, int axis);
 
 /// The message about a periodic axis on which samples that are `steps` (1 or 2) steps apart are half a period apart or
 /// more: the shorter way between two neighbours would lead round the other side. Empty if there are none. O(samples)

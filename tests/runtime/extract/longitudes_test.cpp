@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Longitudes: under affine maps, of regions, and with samples that repeat the first ones a turn further.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "errors.hpp"
+#include "tegl/check.hpp"
+#include "tegl/curved.hpp"
+#include "tegl/measure.hpp"
+#include "tegl/periodic.hpp"
+
+namespace tegl {
+namespace {
+
+using namespace test;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+Grid<2> affine_grid(std::size_t columns, double step) {
+  Grid<2> grid = Grid<2>::unit({columns, 5});
+  grid.axes[0].name = "lon";
+  grid.axes[0].unit = "degrees_east";
+  grid.linear[0][0] = step;
+  grid.offset = {-30.0, 0.0};
+  return grid;
+}
+
+TEST(Longitudes, OfAnAffineMapHaveTheirPeriodInTheWorld) {
+  const std::array axes{0};
+  for (const double step : {1.2, -1.2}) {
+    const Grid<2> globe = affine_grid(300, step);
+    EXPECT_EQ(longitude_periods(globe), (AxisPeriods<2>{300.0, 0.0}));
+    EXPECT_EQ(default_periods(globe, axes), (AxisPeriods<2>{300.0, 0.0}));
+    EXPECT_EQ(contour_periods(globe, default_periods(globe, axes)).at(0).vector,
+              (Vector<2>{std::copysign(360.0, step), 0.0}));
+  }
+  EXPECT_EQ(longitude_axes(affine_grid(36, 10.0)), std::vector<int>{0});
+  EXPECT_EQ(default_periods(affine_grid(30, 10.0), axes)[0], 36.0);  // a gap
+  // 360 columns are not the globe
+  EXPECT_EQ(longitude_axes(affine_grid(360, 0.5)), std::vector<int>{});
+  EXPECT_EQ(longitude_axes(affine_grid(360, 1.0)), std::vector<int>{0});
+  expect_error(ErrorCode::InvalidArgument, "its samples span 174.5, and the gap behind them is 185.5",
+               [&] { (void)default_periods(affine_grid(350, 0.5), axes); });
+}
+
+TEST(Longitudes, MixedWithOtherAxesHaveNoDefaultPeriod) {
+  Grid<2> grid = affine_grid(300, 1.2);
+  grid.linear = {{{1.2, 0.1}, {0.0, 1.0}}};
+  const auto refuses = [&](const char* text) {
+    EXPECT_EQ(longitude_axes(grid), std::vector<int>{});
+    expect_error(ErrorCode::InvalidArgument, text, [&] { (void)default_periods(grid, std::array{0}); });
+  };
+  refuses(
+      "the unit of axis 0 (lon) is that of longitudes, but in the world, by the affine map, longitudes grow along "
+      "axis 0 (lon) and axis 1 (y); expected a given period");
+  grid.linear = {{{0.0, 1.2}, {1.0, 0.0}}};
+  refuses("longitudes grow along axis 1 (y); expected");
+}
+
+/// A globe of 36 columns, with coordinates by two indices or straight ones; `repeated` of its columns follow again.
+struct Globe {
+  OwnedImage<double, 2> image;
+  std::vector<CurvedAxis> curved;
+};
+Globe globe(std::size_t repeated, bool is_curved, double step = 10.0) {
+  const std::size_t columns = 36 + repeated;
+  Globe result;
+  result.image.grid = Grid<2>::unit({columns, 17});
+  result.image.grid.axes[0] = Axis::uniform(columns, -175.0, step);
+  result.image.grid.axes[1] = Axis::uniform(17, -80.0, 10.0);
+  result.image.grid.axes[0].unit = "degrees_east";
+  CurvedAxis lon{0, 3, {}, "lon", "degrees_east"}, lat{1, 3, {}, "lat", "degrees_north"};
+  for (std::size_t j = 0; j < 17; ++j)
+    for (std::size_t i = 0; i < columns; ++i) {
+      const auto x = static_cast<double>(i % 36), turns = i < 36 ? 0.0 : 1.0;
+      const double angle = 2 * std::numbers::pi * x / 36;
+      lon.values.push_back(-175.0 + step * (x + 36 * turns) + 0.1 * static_cast<double>(j));
+      lat.values.push_back(-80.0 + 10.0 * static_cast<double>(j) + std::sin(angle));
+      result.image.values.push_back(40.0 * std::cos(angle) - std::abs(lat.values.back()));
+    }
+  result.image.values[0] = result.image.values[36 < columns ? 36 : 0] = kNaN;
+  if (is_curved) result.curved = {std::move(lon), std::move(lat)};
+  return result;
+}
+
+TEST(Longitudes, SamplesThatRepeatTheFirstOnesAreLeftOut) {
+  const std::array axes{0};
+  for (const bool is_curved : {false, true})
+    for (const double step : {10.0, -10.0})
+      for (const bool is_by_points : {false, true}) {
+        const Globe plain = globe(0, is_curved, step);
+        const auto seams = find_seams(plain.image.grid, plain.curved, axes);
+        const auto expected = extract_curved<double>(plain.image.view(), plain.curved, 0.0, {}, seams);
+        EXPECT_EQ(repeated_longitudes<2>(plain.image.grid, plain.curved, 0), 0u);
+        for (const std::size_t repeated : {1U, 2U, 5U}) {
+          Globe longer = globe(repeated, is_curved, step);
+          if (is_by_points) longer.curved = by_points(std::move(longer.curved));
+          const Image<double, 2> image = longer.image.view();
+          EXPECT_EQ(repeated_longitudes<2>(image.grid(), longer.curved, 0), repeated);
+          EXPECT_EQ(repeated_longitudes<2>(image.grid(), longer.curved, 1), 0u);
+          EXPECT_EQ(longitude_axes<2>(image.grid(), longer.curved), std::vector<int>{});
+          EXPECT_EQ((longitude_axes<double, 2>(image, longer.curved)), std::vector<int>{0});
+          const auto kept = without_repeated<double, 2>(image, longer.curved, axes, std::array{kNaN});
+          EXPECT_EQ(kept.left_out, (std::array<std::size_t, 2>{repeated, 0}));
+          EXPECT_EQ(kept.image.data(), image.data());
+          const auto around = find_seams(kept.image.grid(), kept.curved, axes);
+          const auto contour = extract_curved<double>(kept.image, kept.curved, 0.0, {}, around);
+          EXPECT_EQ(contour.vertices, expected.vertices);
+          EXPECT_EQ(contour.simplices, expected.simplices);
+          const auto all = without_repeated<double, 2>(image, longer.curved, axes, std::array{400.0});
+          EXPECT_EQ(all.left_out[0], 0u);
+        }
+      }
+}
+
+TEST(Longitudes, SamplesWithOtherValuesOrCoordinatesAreNotLeftOut) {
+  const std::array axes{0};
+  for (const bool is_curved : {false, true}) {
+    Globe longer = globe(2, is_curved);
+    const std::size_t at = 38 * 3 + 37;
+    const double value = std::exchange(longer.image.values[at], 2.5);
+    longer.image.values[38 * 3 + 1] = 2.25;
+    const auto leave_out = [&] { return without_repeated<double, 2>(longer.image.view(), longer.curved, axes); };
+    expect_error(
+        ErrorCode::InvalidArgument,
+        "the last 2 samples along axis 0 (x) are at the longitudes of the first, 360 degrees further, but with "
+        "other values: 2.5 at the sample (37, 3), 2.25 at the sample (1, 3); expected equal values",
+        [&] { (void)leave_out(); });
+    EXPECT_EQ((longitude_axes<double, 2>(longer.image.view(), longer.curved)), std::vector<int>{});
+    longer.image.values[at] = kNaN;
+    expect_error(ErrorCode::InvalidArgument, "nan at the sample (37, 3)", [&] { (void)leave_out(); });
+    longer.image.values[at] = longer.image.values[38 * 3 + 1] = value;
+    EXPECT_EQ(leave_out().left_out[0], 2u);
+    if (!is_curved) continue;
+    const double latitude = std::exchange(longer.curved[1].values[at], 7.0);
+    EXPECT_EQ(leave_out().left_out[0], 0u);
+    longer.curved[1].values[at] = kNaN;
+    EXPECT_EQ(leave_out().left_out[0], 0u);
+    longer.curved[1].values[38 * 3 + 1] = kNaN;  // both are unknown
+    EXPECT_EQ(leave_out().left_out[0], 2u);
+    longer.curved[1].values[at] = longer.curved[1].values[38 * 3 + 1] = latitude;
+    longer.curved[0].values[at] += 1.0;
+    EXPECT_EQ(leave_out().left_out[0], 0u);
+  }
+}
+
+TEST(Longitudes, OfCurvedGridsThatDoNotRunAroundTheGlobeOnceAreErrors) {
+  const std::array axes{0};
+  const auto refuses = [&](const Globe& one, const char* text) {
+    expect_error(ErrorCode::InvalidArgument, text, [&] { (void)find_seams(one.image.grid, one.curved, axes); });
+  };
+  for (const double sign : {1.0, -1.0}) {
+    refuses(globe(1, true, sign * 10.0),
+            "the last coordinates are 360 from the first ones, in the mean of all rows; expected a longer "
+            "period, or samples without the last ones");
+    refuses(globe(2, true, sign * 10.0), "the last coordinates are 370 from the first ones");
+    refuses(globe(0, true, sign * 3.0),
+            "the longitudes along axis 0 (x), a curved axis, span 105, in the mean of all "
+            "rows, so they neither run around the globe nor return to the first ones");
+    refuses(globe(0, true, sign * 5.14), "span 179.9, in the mean");
+    EXPECT_EQ(find_seams(globe(0, true, sign * 5.2).image.grid, globe(0, true, sign * 5.2).curved, axes)[0].vector,
+              (Vector<2>{sign * 360.0, 0.0}));  // a gap of 178 degrees
+  }
+}
+
+TEST(Longitudes, OfAGridAroundAnIslandReturnToTheirPlaces) {
+  for (const int count : {3, 4, 5, 40})
+    for (const double first : {0.0, 0.3, 0.7, 1.25}) {
+      Grid<2> grid = Grid<2>::unit({static_cast<std::size_t>(count), 4});
+      std::vector<CurvedAxis> curved = {{0, 3, {}, "lon", "degrees_east"}, {1, 3, {}, "lat", "degrees_north"}};
+      for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < count; ++i) {
+          const double angle = 2 * std::numbers::pi * (i + first) / count;
+          curved[0].values.push_back(20.0 + (1 + j) * std::cos(angle));
+          curved[1].values.push_back(-5.0 + (1 + j) * std::sin(angle));
+        }
+      EXPECT_EQ(find_seams(grid, curved, std::array{0})[0].vector, (Vector<2>{})) << count << " " << first;
+    }
+}
+
+}  // namespace
+}  // namespace tegl
