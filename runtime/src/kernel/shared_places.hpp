@@ -207,10 +207,7 @@ class ResolvedPlaces {
     return mask_mean<4>(points, std::identity(), on_edge(edges), true);
   }
 
-  /// Whether own vertices with these masks, all combined, depend on vertices on edges. Not if all are copies of
-  /// corners.
-  static bool needs_edges(std::uint64_t masks) noexcept { return masks >> 16 != 0; }
-  /// Calls write(j, position) for all own vertices of a filling (ResolvedView::masks) except those that are means.
+  /// Calls write(j, position) for all own vertices of a filling (ResolvedView::masks).
   template <class Write>
   void own_vertices(const ResolvedView& filling, const Write& write) noexcept {
     TesseractRays rays;
@@ -218,7 +215,6 @@ class ResolvedPlaces {
     std::size_t ray = 0;
     for (unsigned j = 0; j < filling.own_vertices; ++j) {
       const std::uint64_t mask = filling.masks[j];
-      if (is_mean(mask)) continue;
       TilePoint<4> place;
       if (is_on_ray(mask)) {
         for (unsigned a = 0; a < 4; ++a) place[a] = ray_coordinate(rays.ends[a][ray], rays.levels[ray]);

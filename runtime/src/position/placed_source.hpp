@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "base/function_ref.hpp"
+#include "image/placed_crossings.hpp"
 #include "image/sample_source.hpp"
 #include "tegl/grid.hpp"
 #include "tegl/tile/corners.hpp"
@@ -108,7 +109,7 @@ class PositionsOnEdges {
 };
 
 template <int N>
-class PlacedSource : public SampleSource<N> {
+class PlacedSource : public SampleSource<N>, public PlacedCrossings {
  public:
   using Index = SampleIndex<N>;
 

@@ -90,7 +90,7 @@ void map_local(const std::uint8_t* from, std::size_t count, const std::uint64_t*
 #if HWY_TARGET == HWY_SCALAR || __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
   builders::ResolvedTesseract::map_tetrahedra(from, count, to, swap, out);
 #else
-  const hn::CappedTag<std::uint8_t, 32> d;  // the 16 entries of each half of `to` are in every block of 16 lanes
+  const hn::CappedTag<std::uint8_t, 64> d;  // the 16 entries of each half of `to` are in every block of 16 lanes
   const auto order = hn::LoadDup128(d, kOrders[swap ? 1 : 0]);
   // Not loaded at once: the words have just been written.
   const hn::Repartition<std::uint64_t, decltype(d)> words;
