@@ -168,6 +168,9 @@ TEST(Longitudes, OfCurvedGridsThatDoNotRunAroundTheGlobeOnceAreErrors) {
     refuses(globe(0, true, sign * 5.14), "span 179.9");
     EXPECT_EQ(find_seams(globe(0, true, sign * 5.2).image.grid, globe(0, true, sign * 5.2).curved, axes)[0].vector,
               (Vector<2>{sign * 360.0, 0.0}));  // a gap of 178 degrees
+    // along latitudes, they grow by less
+    const Globe slanted = globe(0, true, sign * 10.0);
+    EXPECT_EQ(find_seams(slanted.image.grid, slanted.curved, std::array{1})[0].vector, (Vector<2>{}));
   }
 }
 
