@@ -393,8 +393,8 @@ def test_longitudes_have_a_period_of_360():
         assert contour(lon, {"lon": 400.0}).periods.tolist() == [[0, 400]]
     assert contour(np.arange(0, 350, 10.0), "lon", unit="").periods.tolist() == [[0, 350]]
     for of in (tegl.contour, tegl.count):
-        with pytest.raises(ValueError, match=r"the period of axis 1 \(lon\), of longitudes, is 360, and is not more than 360, the span"):
-            contour(np.arange(0, 361, 10.0), "lon", of)
+        with pytest.raises(ValueError, match=r"the period of axis 1 \(lon\), of longitudes, is 360, and is not more than 361, the span"):
+            contour(np.r_[0:360:10.0, 361], "lon", of)
         with pytest.raises(ValueError, match=r"axis 1 \(lon\).* span 30, and the gap behind them is 330; expected less than 180, or a"):
             contour(np.arange(120, 151, 10.0), "lon", of)
     assert contour(np.arange(0, 151, 10.0), {"lon": 160.0}).periods.tolist() == [[0, 160]]

@@ -70,7 +70,8 @@ requires DimensionBetween<N, 2, 5>
 /// above. Errors: InvalidGrid (as `extract_curved`, and an axis that the grid does not have); InvalidArgument (as
 /// `default_periods`; another number of periods; one not positive and finite, or not more than twice the mean step
 /// across the seam, as in another unit; without a given period, longitudes that grow by 360 degrees or more, and those
-/// of a region: a seam to the places of the first samples that is much longer than all steps along the axis).
+/// of a region: the axis along which they grow most has a seam to the places of the first samples that is more than
+/// twice as long as its longest step, in the mean of all rows).
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,

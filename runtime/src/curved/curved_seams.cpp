@@ -275,10 +275,13 @@ void require_return(const Grid<N>& grid, const CurvedAxis& one, int a) {
   constexpr double kLonger = 2.001;   // around an island in three steps, the last one may be twice the others
   constexpr double kRounding = 1e-3;  // degrees
   const double back = std::abs(mean_growth(grid, one, a));
+  for (int b = 0; b < N; ++b)
+    if (b != a && (one.along >> b & 1u) != 0 && std::abs(mean_growth(grid, one, b)) > back)
+      return;  // b runs along them
   if (!(back > kRounding && back > kLonger * mean_longest_step(grid, one, a))) return;
   throw Error(
       ErrorCode::InvalidArgument,
-      fmt::format("the longitudes along {}, a curved axis, span {}, in the mean of all rows, so they neither run "
+      fmt::format("the longitudes along {}, a curved axis, span {:.6g}, in the mean of all rows, so they neither run "
                   "around the globe nor return to the first ones; expected a span of more than 180 and less "
                   "than 360, or a given period",
                   detail::label_of_axis(grid.axes[a], a), back));
