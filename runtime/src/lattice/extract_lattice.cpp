@@ -14,7 +14,6 @@
 
 #include <fmt/format.h>
 
-#include "base/periods.hpp"
 #include "base/progress.hpp"
 #include "base/stopwatch.hpp"
 #include "base/workers.hpp"
@@ -164,7 +163,7 @@ class LatticeWriter {
   }
 
  private:
-  static constexpr std::size_t kMostEdges = 30;  ///< of a cell
+  static constexpr std::size_t kMostEdges = LatticeCell::OwnVertex::kMostEdges;  ///< of a cell
   static constexpr std::size_t kMostKinds = 16;  ///< of edges of a sample
   static constexpr std::size_t kMargin = LatticePoints<N, Real>::kMargin;
 
@@ -245,15 +244,16 @@ class LatticeWriter {
     of.at = row;
     if (is_layered_) of.between = times_after(row);
     for (const ActiveInRow& active : std::span(scratch.active).first(count)) {
-      if (of.cell->contours[active.signature].own == 0) continue;
+      const std::size_t added = of.cell->contours[active.signature].own;
+      if (added == 0) continue;
       of.at[0] = active.at;
       for (std::uint32_t rest = of.cell->crossed[active.signature]; rest != 0; rest &= rest - 1) {
         const auto e = static_cast<unsigned>(std::countr_zero(rest));
         const LatticeRows::Crossed crossed{streams[e].bits, streams[e].before};
         of.vertices[e] = streams[e].first + crossed[active.at + static_cast<std::size_t>(streams[e].at)];
-        of.points[e] = widened_point<N>(contour_.vertices[of.vertices[e]]);
+        for (std::size_t a = 0; a < N; ++a) of.points[e][a] = double{contour_.vertices[of.vertices[e]][a]};
       }
-      const std::vector<LatticeCell::OwnVertex>& vertices = of.cell->own.at(active.signature);
+      const auto vertices = std::span(of.cell->own).subspan(of.cell->first_own[active.signature], added);
       if (std::any_of(vertices.begin(), vertices.end(), [](const auto& own) { return own.part != 0.0; }))
         add_centre(of);
       for (const LatticeCell::OwnVertex& own : vertices) write_own_point(of, own, number++);
@@ -267,7 +267,7 @@ class LatticeWriter {
 
   void write_own_point(const OwnCell& of, const LatticeCell::OwnVertex& own, Index number) const {
     VertexMean<N, Real> mean;
-    for (const std::uint8_t e : own.edges) {
+    for (const std::uint8_t e : std::span(own.edges).first(own.edge_count)) {
       mean.add(of.points[e]);
       if (gradients_ != nullptr) mean.add_normal(contour_.normals[of.vertices[e]]);
     }

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "complex/built_cells.hpp"
@@ -69,22 +71,20 @@ bool is_inverted(const LatticeCell& cell, int parity, int layers, const Grid<N>&
   return (find_cell_signs<N>(one, points)[0][0] & 1u) != 0;
 }
 
-/// The edges in a mask, ascending by the numbers of the samples at their ends.
-std::vector<std::uint8_t> edges_in_order(const LatticeCell& cell, std::uint64_t mask) {
-  std::vector<std::uint8_t> edges;
+/// Adds the edges in a mask of corners and edges, ascending by the numbers of the samples at their ends.
+void add_edges(const LatticeCell& cell, std::uint64_t mask, LatticeCell::OwnVertex& own) {
   for (mask >>= cell.corners.size(); mask != 0; mask &= mask - 1)
-    edges.push_back(static_cast<std::uint8_t>(std::countr_zero(mask)));
-  std::sort(edges.begin(), edges.end(), [&](std::uint8_t e, std::uint8_t f) {
+    own.edges[own.edge_count++] = static_cast<std::uint8_t>(std::countr_zero(mask));
+  std::sort(own.edges.begin(), own.edges.begin() + own.edge_count, [&](std::uint8_t e, std::uint8_t f) {
     const auto &of_e = cell.ends[e], &of_f = cell.ends[f];
     return of_e[0] == of_f[0] ? is_before(of_e[1], of_f[1]) : is_before(of_e[0], of_f[0]);
   });
-  return edges;
 }
 
 /// Whether a vertex is the mean of points at both times of a prism, or between them.
 bool has_both_times(const LatticeCell& cell, const LatticeCell::OwnVertex& own) {
   std::array<bool, 2> has{};
-  for (const std::uint8_t e : own.edges)
+  for (const std::uint8_t e : std::span(own.edges).first(own.edge_count))
     for (const LatticePlace& end : cell.ends[e]) has[static_cast<std::size_t>(end[3])] = true;
   for (std::uint32_t rest = own.corners; rest != 0; rest &= rest - 1)
     has[static_cast<std::size_t>(cell.corners[static_cast<std::size_t>(std::countr_zero(rest))][3])] = true;
@@ -96,6 +96,7 @@ void add_contour(LatticeCell& cell, const CellTable& table, unsigned signature, 
   const tables::CellList& list = contour.list();
   LatticeCell::Contour& made = cell.contours[signature];
   made.first = static_cast<std::uint32_t>(cell.lists.size() - LatticeCell::kMargin);
+  cell.first_own[signature] = static_cast<std::uint32_t>(cell.own.size());
   made.simplices = list.simplex_count;
   made.own = static_cast<std::uint16_t>(list.added());
   cell.lists.resize(made.first);
@@ -106,8 +107,8 @@ void add_contour(LatticeCell& cell, const CellTable& table, unsigned signature, 
   cell.lists.resize(cell.lists.size() + LatticeCell::kMargin);
   const unsigned first_side = list.shared_vertices + list.cone_vertices;
   for (unsigned j = 0; j < list.added(); ++j) {
-    LatticeCell::OwnVertex& own = cell.own[signature].emplace_back();
-    own.edges = edges_in_order(cell, contour.mask(j));
+    LatticeCell::OwnVertex& own = cell.own.emplace_back();
+    add_edges(cell, contour.mask(j), own);
     own.corners = static_cast<std::uint32_t>(contour.mask(j) & ((std::uint64_t{1} << table.corner_count) - 1));
     if (j >= first_side) own.part = j >= list.added() - list.collar_vertices ? 0.25 : 0.5;
     if (cell.is_swept) own.is_between = own.part != 0.0 || has_both_times(cell, own);
@@ -134,6 +135,7 @@ LatticeCell cell_of(const PatternCell& cell, Lattice lattice, const Grid<N>& gri
   for (unsigned signature = 0; signature < 1u << table.corner_count; ++signature)
     made.crossed.push_back(crossed_edges(table, signature));
   made.contours.resize(made.crossed.size());
+  made.first_own.resize(made.crossed.size());
   made.lists.resize(LatticeCell::kMargin);
   return made;
 }

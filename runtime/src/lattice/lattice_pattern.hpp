@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <vector>
 
 #include "complex/cell_contour.hpp"
@@ -39,10 +38,13 @@ struct LatticeCell {
   /// A vertex inside of the cell: the mean of vertices on edges and of corners, or a part of the way from there to the
   /// mean of all corners.
   struct OwnVertex {
-    std::vector<std::uint8_t> edges = {};  ///< by the numbers of their samples: the order does not depend on the cell
-    std::uint32_t corners = 0;             ///< as bits
-    double part = 0.0;                     ///< of the way
-    bool is_between = false;               ///< of prisms: whether it is off both times
+    static constexpr std::size_t kMostEdges = 30;
+    /// Ascending by the numbers of the samples at their ends, so that the sum does not depend on the cell.
+    std::array<std::uint8_t, kMostEdges> edges{};
+    std::uint8_t edge_count = 0;
+    bool is_between = false;    ///< of prisms: whether it is off both times
+    std::uint32_t corners = 0;  ///< as bits
+    double part = 0.0;          ///< of the way
   };
   /// The contour of a signature.
   struct Contour {
@@ -58,11 +60,12 @@ struct LatticeCell {
   std::vector<LatticePlace> corners = {};  ///< in the order of the table
   std::vector<std::uint8_t> shifts = {};   ///< by corner: its bit in the word of the cell's, modulo 64
   std::vector<Edge> edges = {};            ///< in the order of the table
-  std::vector<std::array<LatticePlace, 2>> ends = {};   ///< by edge
-  std::vector<std::uint32_t> crossed = {};              ///< by signature: edges, as bits
-  std::vector<Contour> contours = {};                   ///< by signature; empty before the contour is added
-  std::vector<std::uint8_t> lists = {};                 ///< vertices of simplices: edges, then own vertices
-  std::map<unsigned, std::vector<OwnVertex>> own = {};  ///< by signature
+  std::vector<std::array<LatticePlace, 2>> ends = {};  ///< by edge
+  std::vector<std::uint32_t> crossed = {};             ///< by signature: edges, as bits
+  std::vector<Contour> contours = {};                  ///< by signature; empty before the contour is added
+  std::vector<std::uint8_t> lists = {};                ///< vertices of simplices: edges, then own vertices
+  std::vector<std::uint32_t> first_own = {};           ///< by signature: in `own`
+  std::vector<OwnVertex> own = {};                     ///< of all signatures
 };
 
 /// Everything of samples in layers of one parity.

@@ -103,7 +103,7 @@ class LatticeRows {
       exists = exists && at[a] + static_cast<std::size_t>(to[a]) < size_[a];
     return exists;
   }
-  /// The number of a row minus that of the row at these differences, modulo 2^64.
+  /// The number of the row at these differences from another one, minus the number of that one, modulo 2^64.
   [[nodiscard]] std::size_t steps(const LatticePlace& to) const noexcept {
     return (static_cast<std::size_t>(to[3]) * size_[2] + static_cast<std::size_t>(to[2])) * size_[1] +
            static_cast<std::size_t>(to[1]);

@@ -26,16 +26,18 @@ template <std::size_t Corners>
 class CellWord {
  public:
   HWY_INLINE explicit CellWord(const LatticeCellRow& row) : row_(row), corners_(row.cell->corners.size()) {
-    for (std::size_t c = 0; c < corners_; ++c) from_[c] = row.bits + row.corners[c];
+    for (std::size_t c = 0; c < corners_; ++c) {
+      from_[c] = row.bits + row.corners[c];
+      shift_[c] = row.cell->shifts[c];
+    }
   }
 
   /// Reads the corners of the cells from word w on. Returns the active cells.
   HWY_INLINE Word read(std::size_t w) {
-    const std::uint8_t* const shifts = row_.cell->shifts.data();
     Word any = 0, all = ~Word{0};
     for (std::size_t c = 0; c < corners_; ++c) {
       const Word* const from = from_[c] + w;
-      bits_[c] = from[0] >> shifts[c] | from[1] << 1 << (kWordBits - 1 - shifts[c]);
+      bits_[c] = from[0] >> shift_[c] | from[1] << 1 << (kWordBits - 1 - shift_[c]);
       any |= bits_[c];
       all &= bits_[c];
     }
@@ -69,6 +71,7 @@ class CellWord {
   const LatticeCellRow& row_;
   std::size_t corners_;
   std::array<const Word*, Corners> from_;
+  std::array<std::size_t, Corners> shift_;
   alignas(64) std::array<Word, Corners> bits_{};  // 0 for corners that the cell does not have
 };
 
@@ -241,6 +244,7 @@ HWY_INLINE std::array<Index, N>* write_of(const LatticeCellRow& row, const EdgeS
                                           std::array<Index, N>* out, [[maybe_unused]] std::array<Index, N>* end) {
   const LatticeCell& cell = *row.cell;
   const LatticeCell::Contour* const contours = cell.contours.data();
+  [[maybe_unused]] const std::uint8_t* const lists = cell.lists.data();
   CellWord<Corners> cells(row);
   EdgeWord<Lanes> edges(streams, cell.edges.size(), own);
   for (std::size_t w = 0; w < row.words; ++w) {
@@ -250,13 +254,13 @@ HWY_INLINE std::array<Index, N>* write_of(const LatticeCellRow& row, const EdgeS
     for (; rest != 0; rest &= rest - 1) {
       const auto bit = static_cast<unsigned>(std::countr_zero(rest));
       const unsigned signature = cells.signature(bit);
-      const LatticeCell::Contour& contour = contours[signature];
+      const LatticeCell::Contour contour = contours[signature];
       const auto put = [&]() HWY_ATTR {
 #if HWY_TARGET <= HWY_AVX2
         if constexpr (kInRegisters<Lanes>)
           if (HWY_LIKELY(contour.own <= edges.own_lanes()))
-            return put_by_register<N, Lanes>(edges, bit, cell.lists.data() + contour.first, contour.simplices,
-                                             out->data(), end->data());
+            return put_by_register<N, Lanes>(edges, bit, lists + contour.first, contour.simplices, out->data(),
+                                             end->data());
 #endif
         put_one_by_one<N, Lanes>(edges, bit, cell, cell.crossed[signature], contour, own, out);
       };

@@ -22,8 +22,8 @@ namespace tegl::detail {
 struct LatticeCellRow {
   static constexpr std::size_t kMostCorners = 16;
   const LatticeCell* cell;
-  const Word*
-      bits;  ///< the first word of the cells' samples; before the first word of a row and after its last one is 0
+  /// The words of the cells' samples. The word before the first one of each row and the one after its last one are 0.
+  const Word* bits;
   /// By corner: the words from `bits` to the first one with the corners of 64 cells, of which LatticeCell::shifts bits
   /// belong to cells before.
   const std::ptrdiff_t* corners;
