@@ -128,13 +128,12 @@ void add_parts(unsigned f, std::size_t list, CubeLists& result) {
     if ((done >> triangles[t] & 1u) != 0) continue;
     const std::uint32_t vertices = connected(neighbours, triangles[t]);
     done |= vertices;
-    CubeLists::Part part{~std::uint32_t{0}, static_cast<std::uint32_t>(result.words.size()), 0,
-                         static_cast<std::uint8_t>(f), 0};
+    CubeLists::Part part{0, static_cast<std::uint32_t>(result.words.size()), 0, static_cast<std::uint8_t>(f), 0};
     for (std::uint32_t rest = vertices; rest != 0; rest &= rest - 1) {
       const auto v = static_cast<unsigned>(std::countr_zero(rest));
       part.vertices |= std::uint64_t{1} << lifted_vertex(f, v);
       if (v < kCubeEdges && !may_be_apex(triangles, neighbours, v, vertices))
-        part.apexes &= ~(1u << lifted_vertex(f, v));
+        part.not_apexes = static_cast<std::uint16_t>(part.not_apexes | 1u << v);
     }
     for (std::size_t u = t; u < triangles.size(); u += 3) {
       if ((vertices >> triangles[u] & 1u) == 0) continue;
@@ -164,14 +163,13 @@ CubeLists make_cube_lists(const ResolvedCube& cube, const VariantTables& variant
       add_parts(f, i, result);
       const std::size_t count = result.parts.size() - first;
       if (count > CubeLists::kMostParts) throw Error(ErrorCode::Internal, "a cube with more than four polygons");
-      // In this cube, vertices of one part are not adjacent to those of another part.
-      const auto edges = static_cast<std::uint32_t>(detail::face_edges(4, f));
-      result.apexes.push_back(result.parts[first].apexes & (count > 1 ? ~edges : ~std::uint32_t{0}));
       if (f != 0) continue;
+      // In this cube, vertices of one part are not adjacent to those of another part.
+      constexpr std::uint16_t kAll = (1u << CubeLists::kCubeEdges) - 1;
+      result.lists[i].not_apexes = count > 1 ? kAll : result.parts[first].not_apexes;
       result.lists[i].first_part = static_cast<std::uint32_t>(first);
       result.lists[i].part_count = static_cast<std::uint8_t>(count);
     }
-    result.apexes.push_back(~std::uint32_t{0});  // for kNone
     if (f == 0) result.parts_of_cube = static_cast<std::uint32_t>(result.parts.size());
   }
   return result;

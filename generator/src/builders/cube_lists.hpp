@@ -35,10 +35,11 @@ struct CubeLists {
     std::array<std::uint32_t, kMostOwn> masks{};  ///< corners (bit v) and edges (bit 8 + e) of own vertices
     std::uint32_t first_part = 0;                 ///< relative to the cube's first part
     std::uint8_t part_count = 0;
+    std::uint16_t not_apexes = 0;  ///< edges of the cube that may not be a cone's apex, if cubes connect all parts
   };
   /// A connected component of a list in one of the cubes.
   struct Part {
-    std::uint32_t apexes;          ///< edges of the tile that may be a cone apex
+    std::uint16_t not_apexes;      ///< edges of the cube that may not be a cone apex
     std::uint32_t first_triangle;  ///< in `words`
     std::uint8_t triangle_count, cube;
     std::uint64_t vertices;
@@ -48,7 +49,6 @@ struct CubeLists {
   std::vector<List> lists;
   std::vector<std::uint16_t> list_of;              ///< by 3 * entry + choice
   std::vector<std::uint8_t> triangles;             ///< of the lists, in the cube: 3 local vertices each
-  std::vector<std::uint32_t> apexes;               ///< by cube, then by list and kNone
   std::uint32_t parts_of_cube = 0;                 ///< number of parts of a cube
   std::vector<Part> parts;                         ///< by cube, then by list
   std::vector<std::array<std::uint8_t, 4>> words;  ///< triangles by part, in the cube: 128 and three local vertices

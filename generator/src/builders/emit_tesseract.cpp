@@ -295,7 +295,7 @@ std::string source_text(const BuilderRequest& request, const std::string& banner
                  {"cone_all", edges ? std::string(template_text("builder4_edges_cone.cpp"))
                                     : std::string(template_text("builder4_cone.cpp"))},
                  {"cone_apart", edges ? std::string(template_text("builder4_edges_apart.cpp"))
-                                      : filled("builder4_apart.cpp", {{"add_cubes", for_cubes("add({});")}})},
+                                      : std::string(template_text("builder4_apart.cpp"))},
                  {"find_connected", edges ? std::string(template_text("builder4_edges_connected.cpp"))
                                           : filled("builder4_connected.cpp", {{"add_cubes", for_cubes("add({});")}})}});
 }

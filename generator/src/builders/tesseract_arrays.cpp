@@ -160,6 +160,18 @@ void define_frames(std::string& text) {
         return fmt::format("{{{{{}}}}}", fmt::join(lifted, ","));
       },
       "{{", "}}");
+  define(
+      text,
+      class_array("std::array<std::array<std::array<std::uint32_t, 64>, 2>, ResolvedCubes::kCubes>", "kLiftedEdges"),
+      std::array{0u, 1u, 2u, 3u, 4u, 5u, 6u, 7u},
+      [](unsigned f) {
+        std::array<std::array<std::uint32_t, 64>, 2> lifted{};
+        for (unsigned e = 0; e < CubeLists::kCubeEdges; ++e)
+          for (unsigned set = 0; set < 64; ++set)
+            lifted[e / 6][set] |= (set >> e % 6 & 1u) << lifted_vertex(f, e);
+        return fmt::format("{{{{{{{{{}}}}},{{{{{}}}}}}}}}", fmt::join(lifted[0], ","), fmt::join(lifted[1], ","));
+      },
+      "{{", "}}");
 }
 
 void define_lists(std::string& text, const CubeLists& lists, const std::string& suffix) {
@@ -179,24 +191,23 @@ void define_lists(std::string& text, const CubeLists& lists, const std::string& 
   and_none.push_back({});
   define(text, name("ResolvedCubes::Summary", "Summaries"), and_none, [&](const CubeLists::List& l) {
     const std::uint32_t first_triangle = l.part_count == 0 ? 0 : lists.parts[l.first_part].first_triangle;
-    return fmt::format("{{{},{},{},{},{},{}}}", l.first_part, first_triangle, l.part_count, l.triangle_count,
-                       l.own_vertices, l.barycentres);
+    return fmt::format("{{{},{},{},{},{},{},{}}}", l.first_part, first_triangle, l.not_apexes, l.part_count,
+                       l.triangle_count, l.own_vertices, l.barycentres);
   });
-  define(text, name("std::uint32_t", "Apexes"), lists.apexes, mask);
   std::vector<CubeLists::Part> parts = lists.parts;
   parts.resize(lists.parts_of_cube);
-  define(text, name("ResolvedCubes::PartTriangles", "Parts"), parts,
-         [](const CubeLists::Part& p) { return fmt::format("{{{},{}}}", p.first_triangle, p.triangle_count); });
+  define(text, name("ResolvedCubes::PartOfCube", "Parts"), parts, [](const CubeLists::Part& p) {
+    return fmt::format("{{{},{},{}}}", p.first_triangle, p.not_apexes, p.triangle_count);
+  });
   parts = lists.parts;
   parts.resize(parts.size() + CubeLists::kMostParts);
-  define(text, name("std::uint32_t", "PartApexes"), parts, [](const CubeLists::Part& p) { return mask(p.apexes); });
   define(text, name("std::uint64_t", "PartVertices"), parts, [](const CubeLists::Part& p) { return mask(p.vertices); });
   constexpr std::size_t kWordsBehind = 16;
   define_bytes(text, "kWords" + suffix, flat(lists.words, 4 * kWordsBehind), 32);
   fmt::format_to(Out(text),
                  "\nconstinit const ResolvedCubes kCubes{0}({{kLists{0}, kKeys{0}, kTriangles{0}, kFirstTriangle{0}, "
-                 "kMasks{0}, kSummaries{0},\n                                          kApexes{0}, kParts{0}, "
-                 "kPartApexes{0}, kPartVertices{0}, kWords{0}}});\n",
+                 "kMasks{0}, kSummaries{0},\n                                          kParts{0}, kPartVertices{0}, "
+                 "kWords{0}}});\n",
                  suffix);
 }
 
