@@ -40,10 +40,12 @@ namespace tegl {
 namespace detail {
 namespace {
 
-/// Whether all samples are within the range of Real, so that vertices are.
+/// Whether all samples are within the range of Real, so that vertices are. Exact: contours in other types, and numbers
+/// interpolated to their vertices, take the same way.
 template <class Real, int N>
-bool is_in_range(const Grid<N>& grid) {
-  Vector<N> size{};
+bool is_in_range(const Grid<N>& grid, int layers) {
+  constexpr double kMost{std::numeric_limits<Real>::max()};
+  Vector<N> size{};  // an upper bound
   for (int row = 0; row < N; ++row) {
     size[row] = std::abs(grid.offset[row]);
     for (int a = 0; a < N; ++a) {
@@ -52,7 +54,14 @@ bool is_in_range(const Grid<N>& grid) {
       size[row] += std::abs(grid.linear[row][a]) * (most + std::abs(axis.size() > 1 ? axis.step() : 0.0));
     }
   }
-  return std::all_of(size.begin(), size.end(), [](double x) { return x <= double{std::numeric_limits<Real>::max()}; });
+  const auto is_in = [](const auto& x) {
+    return std::all_of(x.begin(), x.end(), [](double y) { return std::abs(y) <= kMost; });
+  };
+  if (is_in(size)) return true;
+  bool all = true;
+  for_each_sample<N>(grid.sizes(),
+                     [&](const auto& index) { all = all && is_in(lattice_place<N>(grid, index, layers)); });
+  return all;
 }
 
 /// Whether there are prisms between all times: these are apart from space, and ascend or descend.
@@ -330,14 +339,18 @@ bool extract_by_rows(SampleSource<N>& source, ReadSamples read, const Grid<N>& g
   }
   const LatticeWriter<N, Real> writer(source, read, grid, lattice, rows, gradients ? &*gradients : nullptr, places,
                                       options, result.contour);
-  for_each_part(rows.row_count(), threads, part_of(progress, 0.5, 0.75), [&](std::size_t from, std::size_t to) {
-    typename LatticeWriter<N, Real>::Scratch scratch;
-    for (std::size_t r = from; r < to; ++r) writer.write_edge_points(r, scratch);
-  });
-  for_each_part(rows.row_count(), threads, part_of(progress, 0.75, 1.0), [&](std::size_t from, std::size_t to) {
-    typename LatticeWriter<N, Real>::Scratch scratch;
-    for (std::size_t r = from; r < to; ++r) writer.write_cells(r, scratch);
-  });
+  using Scratch = typename LatticeWriter<N, Real>::Scratch;
+  const auto for_rows = [&](const Progress& of, const auto& write) {
+    constexpr std::size_t kRows = 64;
+    for_each_block(
+        rows.row_count(), kRows, threads, of, [] { return Scratch(); },
+        [&](std::size_t, std::size_t from, std::size_t to, Scratch& scratch) {
+          for (std::size_t r = from; r < to; ++r) write(r, scratch);
+        });
+  };
+  for_rows(part_of(progress, 0.5, 0.75),
+           [&](std::size_t r, Scratch& scratch) { writer.write_edge_points(r, scratch); });
+  for_rows(part_of(progress, 0.75, 1.0), [&](std::size_t r, Scratch& scratch) { writer.write_cells(r, scratch); });
   watch.add_to(result.stats.generate_seconds);
   return true;
 }
@@ -351,8 +364,8 @@ Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice
   check_lattice_arguments<N>(image.grid(), lattice, isovalue, options, periods);
   const Grid<N>& grid = image.grid();
   Extraction<N, Real> result;
-  if (periodic_axes<N>(periods) == 0 && !options.close && has_rows(lattice, options) && is_in_range<Real>(grid) &&
-      (lattice != Lattice::fcc_in_time || has_prisms(grid))) {
+  if (periodic_axes<N>(periods) == 0 && !options.close && has_rows(lattice, options) &&
+      is_in_range<Real>(grid, layer_axis(lattice)) && (lattice != Lattice::fcc_in_time || has_prisms(grid))) {
     check_grid(grid, lattice, layer_axis(lattice));
     (void)count_samples(grid, "a lattice");
     ImageSource<T, N> samples(image, isovalue, options.epsilon);
