@@ -31,6 +31,7 @@
 #include "lattice/lattice_points.hpp"
 #include "lattice/lattice_rows.hpp"
 #include "lattice/lattice_simplices.hpp"
+#include "lattice/row_gradients.hpp"
 #include "lattice/stored_lattice.hpp"
 #include "tegl/error.hpp"
 #include "tegl/lattice.hpp"
@@ -94,7 +95,7 @@ class LatticeWriter {
 
   /// `read`: for the samples' type. `places`: of samples, in place of those on the grid; null: none.
   LatticeWriter(const SampleSource<N>& source, ReadSamples read, const Grid<N>& grid, Lattice lattice,
-                const LatticeRows& rows, const LatticeGradients<N>* gradients,
+                const LatticeRows& rows, const LatticeGradients<N>* gradients, const RowGradients<N>* row_gradients,
                 const std::vector<std::array<double, N>>* places, const ExtractOptions& options,
                 Contour<N, Real>& contour)
       : source_(source),
@@ -102,6 +103,7 @@ class LatticeWriter {
         grid_(grid),
         rows_(rows),
         gradients_(gradients),
+        row_gradients_(row_gradients),
         places_(places),
         layers_(layer_axis(lattice)),
         is_layered_(lattice == Lattice::fcc_in_time && places == nullptr),
@@ -146,6 +148,7 @@ class LatticeWriter {
       edges.out = contour_.vertices.data() + rows_.row(r).first + at;
       edges.end = contour_.vertices.data() + rows_.row(r).first_own;
       write_row(edges, sample(row, {}), sample(row, kinds[kind].to));
+      if (gradients_ != nullptr) write_normals(edges, r, kinds[kind].to);
       if (!is_layered_ || kinds[kind].to[N - 1] == 0) continue;
       const auto [low, high] = times_after(row);
       for (Vertex& vertex : std::span(edges.out, more)) vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
@@ -207,7 +210,7 @@ class LatticeWriter {
     return inside_of<Real>(time({}), time({0, 0, 0, 1}));
   }
 
-  /// Writes the vertices and normals on edges from samples of one row to those of another. `from`, `to`: the ends of
+  /// Writes the vertices on edges from samples of one row to those of another. `from`, `to`: the ends of
   /// the edge of the row's first sample.
   void write_row(LatticePoints<N, Real>& edges, const Sample& from, const Sample& to) const noexcept {
     if (places_ == nullptr) {
@@ -219,17 +222,23 @@ class LatticeWriter {
       edges.mapped = grid_.has_world_map() ? &grid_ : nullptr;
       write_points(edges);
     }
-    if (places_ == nullptr && gradients_ == nullptr) return;
+    if (places_ == nullptr) return;
     for (std::size_t i = 0; i < edges.count; ++i) {
       Sample a = from, b = to;
       a[0] += edges.at[i];
       b[0] += edges.at[i];
-      if (places_ != nullptr)
-        edges.out[i] = point_on_edge<Real>((*places_)[number_of<N>(grid_, a)], (*places_)[number_of<N>(grid_, b)],
-                                           edges.alphas[i]);
-      if (gradients_ == nullptr) continue;
-      const auto number = static_cast<std::size_t>(edges.out - contour_.vertices.data()) + i;
-      contour_.normals[number] = gradients_->template normal<Real>(a, b, edges.alphas[i]);
+      edges.out[i] =
+          point_on_edge<Real>((*places_)[number_of<N>(grid_, a)], (*places_)[number_of<N>(grid_, b)], edges.alphas[i]);
+    }
+  }
+  /// The normals of the vertices on edges of row r to the samples at these differences.
+  void write_normals(const LatticePoints<N, Real>& edges, std::size_t r, const LatticePlace& to) const noexcept {
+    const std::size_t other = r + rows_.steps(to);
+    Vertex* const normals = contour_.normals.data() + (edges.out - contour_.vertices.data());
+    for (std::size_t i = 0; i < edges.count; ++i) {
+      const std::size_t at = edges.at[i];
+      normals[i] = gradients_->template normal_between<Real>(
+          row_gradients_->at(r, at), row_gradients_->at(other, at + static_cast<std::size_t>(to[0])), edges.alphas[i]);
     }
   }
 
@@ -300,6 +309,7 @@ class LatticeWriter {
   const Grid<N>& grid_;
   const LatticeRows& rows_;
   const LatticeGradients<N>* gradients_;
+  const RowGradients<N>* row_gradients_;
   const std::vector<std::array<double, N>>* places_;
   int layers_;       ///< the axis of the layers
   bool is_layered_;  ///< whether cells are between two layers of the last axis
@@ -333,12 +343,15 @@ bool extract_by_rows(SampleSource<N>& source, ReadSamples read, const Grid<N>& g
   result.contour.vertices.resize(rows.vertices());
   result.contour.simplices.resize(rows.simplices());
   std::optional<LatticeGradients<N>> gradients;
+  std::optional<RowGradients<N>> row_gradients;
+  const double start = options.normals == Normals::none ? 0.5 : 0.7;
   if (options.normals != Normals::none) {
     gradients.emplace(source, grid, lattice, options.direction);
+    row_gradients.emplace(rows, patterns, *gradients, WorkOptions{threads, part_of(progress, 0.5, start)});
     result.contour.normals.resize(rows.vertices());
   }
-  const LatticeWriter<N, Real> writer(source, read, grid, lattice, rows, gradients ? &*gradients : nullptr, places,
-                                      options, result.contour);
+  const LatticeWriter<N, Real> writer(source, read, grid, lattice, rows, gradients ? &*gradients : nullptr,
+                                      row_gradients ? &*row_gradients : nullptr, places, options, result.contour);
   using Scratch = typename LatticeWriter<N, Real>::Scratch;
   const auto for_rows = [&](const Progress& of, const auto& write) {
     constexpr std::size_t kRows = 64;
@@ -348,9 +361,10 @@ bool extract_by_rows(SampleSource<N>& source, ReadSamples read, const Grid<N>& g
           for (std::size_t r = from; r < to; ++r) write(r, scratch);
         });
   };
-  for_rows(part_of(progress, 0.5, 0.75),
+  const double middle = 0.5 * (1.0 + start);
+  for_rows(part_of(progress, start, middle),
            [&](std::size_t r, Scratch& scratch) { writer.write_edge_points(r, scratch); });
-  for_rows(part_of(progress, 0.75, 1.0), [&](std::size_t r, Scratch& scratch) { writer.write_cells(r, scratch); });
+  for_rows(part_of(progress, middle, 1.0), [&](std::size_t r, Scratch& scratch) { writer.write_cells(r, scratch); });
   watch.add_to(result.stats.generate_seconds);
   return true;
 }

@@ -38,7 +38,11 @@ class LatticeGradients {
   /// The unit normal at `alpha` between two samples, on the side of the direction; 0 if the gradient is zero.
   template <class Real>
   [[nodiscard]] std::array<Real, N> normal(const Sample& from, const Sample& to, double alpha) const {
-    const Gradient a = at(from), b = at(to);
+    return normal_between<Real>(at(from), at(to), alpha);
+  }
+  /// The same of gradients at the two samples.
+  template <class Real>
+  [[nodiscard]] std::array<Real, N> normal_between(const Gradient& a, const Gradient& b, double alpha) const {
     Gradient sum;
     for (int i = 0; i < N; ++i) sum[i] = sign_ * ((1.0 - alpha) * a[i] + alpha * b[i]);
     return unit<Real>(sum);

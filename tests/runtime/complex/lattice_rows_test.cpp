@@ -340,8 +340,9 @@ TEST(LatticeRows, CanBeCancelledAtEachReport) {
     (void)extract_lattice<double>(image.view(), lattice, 0.5, options);
     EXPECT_TRUE(std::is_sorted(reports.begin(), reports.end()));
     EXPECT_EQ(reports.back(), 1.0);
-    // some while contours of cells are built
-    EXPECT_GT(std::count_if(reports.begin(), reports.end(), [](double x) { return x > 0.3 && x < 0.35; }), 1);
+    if (lattice == Lattice::fcc_in_time) {  // with so many contours of cells that some reports come between them
+      EXPECT_GT(std::count_if(reports.begin(), reports.end(), [](double x) { return x > 0.3 && x < 0.35; }), 1);
+    }
     for (std::size_t last = 0; last < reports.size(); ++last) {
       std::size_t seen = 0;
       options.work.progress = [&](double) { return seen++ < last; };
