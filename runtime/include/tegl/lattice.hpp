@@ -70,8 +70,9 @@ requires DimensionBetween<N, 2, 4>
 /// and cells of half a period or more (two steps across layers). The result does not depend on the number of threads.
 /// O(P) time. Memory: for each row of samples along axis 0 about 40 bytes, and for every 64 samples begun 44
 /// (triangular), 80 (fcc), 92 (bcc, fcc_in_time) or 152 (d4); so 1.3 bytes per sample of fcc in long rows, 4.8 of d4 in
-/// rows of 40. Rows far from the contour need less. In 4D the contours of cells take up to about 2 MB (d4) or 10 MB
-/// (fcc_in_time). If cells are stored: twice the memory of `lattice_complex`.
+/// rows of 40. Rows far from the contour need less. With normals: 8 N bytes for each sample beside it. In 4D the
+/// contours of cells take up to about 2 MB (d4) or 10 MB (fcc_in_time). If cells are stored: twice the memory of
+/// `lattice_complex`.
 template <Coordinate Real = float, Value T, int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] Contour<N, Real> extract_lattice(const Image<T, N>& image, Lattice lattice, double isovalue,

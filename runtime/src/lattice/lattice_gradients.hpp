@@ -35,12 +35,8 @@ class LatticeGradients {
   LatticeGradients(const CornerValues<N>& values, const Grid<N>& grid, Lattice lattice, GradientDirection direction,
                    const AxisPeriods<N>& periods = {});
 
-  /// The unit normal at `alpha` between two samples, on the side of the direction; 0 if the gradient is zero.
-  template <class Real>
-  [[nodiscard]] std::array<Real, N> normal(const Sample& from, const Sample& to, double alpha) const {
-    return normal_between<Real>(at(from), at(to), alpha);
-  }
-  /// The same of gradients at the two samples.
+  /// The unit normal at `alpha` between two samples with these gradients, on the side of the direction; 0 if the
+  /// gradient is zero.
   template <class Real>
   [[nodiscard]] std::array<Real, N> normal_between(const Gradient& a, const Gradient& b, double alpha) const {
     Gradient sum;
