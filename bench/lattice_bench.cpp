@@ -346,9 +346,6 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "4d")
     return measure_4d(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 40,
                       argc > 3 ? std::max(1, std::atoi(argv[3])) : 5);
-  if (argc > 1 && std::string_view(argv[1]) == "4d")
-    return measure_4d(argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 40,
-                      argc > 3 ? std::max(1, std::atoi(argv[3])) : 5);
   const std::size_t n = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 192;
   const int runs = argc > 2 ? std::atoi(argv[2]) : 7;
   ExtractOptions options;

@@ -317,12 +317,12 @@ def lattices_4d(result: dict) -> list[str]:
     text = ["| samples | active cells | ms | comparison, ns per sample | ns per sample | ns per active cell | memory, bytes per sample |",
             "|---|---|---|---|---|---|---|"]
     for name, row in rows.items():
-        label = name.replace("complex", "cells stored").replace("fcc_in_time", "fcc × time")
+        label = name.replace("complex", "cells stored")
         text.append(f"| {label} | {spaced(row['active cells'])} | {row['ms']} | {float(row['classify, ns per sample']):.2f} | "
                     f"{float(row['ns per sample']):.2f} | {row['ns per active cell']} | {row['working memory, bytes per sample']} |")
     times = [[float(rows[f"{field}, {lattice}"]["ns per active cell"]) / float(rows[f"{field}, cubic"]["ns per active cell"])
               for lattice in ("d4", "fcc_in_time")] for field in ("waves", "noise")]
-    return text + ["", f"An active cell of d4 takes {times[0][0]:.1f} times the time of a tesseract (noise: {times[1][0]:.1f}), of fcc × time "
+    return text + ["", f"An active cell of d4 takes {times[0][0]:.1f} times the time of a tesseract (noise: {times[1][0]:.1f}), of fcc_in_time "
                    f"{times[0][1]:.1f} times (noise: {times[1][1]:.1f})."]
 
 
@@ -376,8 +376,7 @@ def write_tilings() -> None:
     put_between(COST, "curved and periodic grids", curved(result))
     put_between(TILINGS, "periodic axes", periodic(result))
     put_between(TILINGS, "lattices", lattices(result))
-    if "lattices in 4D" in result:
-        put_between(TILINGS, "lattices in 4D", lattices_4d(result))
+    put_between(TILINGS, "lattices in 4D", lattices_4d(result))
     put_between(MESHES, "meshes", meshes(result))
     put_between(MESHES, "types of cells", types_of_cells(result))
 

@@ -31,6 +31,7 @@
 #include "lattice/lattice_points.hpp"
 #include "lattice/lattice_rows.hpp"
 #include "lattice/lattice_simplices.hpp"
+#include "lattice/row_gradients.hpp"
 #include "lattice/stored_lattice.hpp"
 #include "tegl/error.hpp"
 #include "tegl/lattice.hpp"
@@ -40,10 +41,12 @@ namespace tegl {
 namespace detail {
 namespace {
 
-/// Whether all samples are within the range of Real, so that vertices are.
+/// Whether all samples are within the range of Real, so that vertices are. Exact: contours in other types, and numbers
+/// interpolated to their vertices, take the same way.
 template <class Real, int N>
-bool is_in_range(const Grid<N>& grid) {
-  Vector<N> size{};
+bool is_in_range(const Grid<N>& grid, int layers) {
+  constexpr double kMost{std::numeric_limits<Real>::max()};
+  Vector<N> size{};  // an upper bound
   for (int row = 0; row < N; ++row) {
     size[row] = std::abs(grid.offset[row]);
     for (int a = 0; a < N; ++a) {
@@ -52,7 +55,14 @@ bool is_in_range(const Grid<N>& grid) {
       size[row] += std::abs(grid.linear[row][a]) * (most + std::abs(axis.size() > 1 ? axis.step() : 0.0));
     }
   }
-  return std::all_of(size.begin(), size.end(), [](double x) { return x <= double{std::numeric_limits<Real>::max()}; });
+  const auto is_in = [](const auto& x) {
+    return std::all_of(x.begin(), x.end(), [](double y) { return std::abs(y) <= kMost; });
+  };
+  if (is_in(size)) return true;
+  bool all = true;
+  for_each_sample<N>(grid.sizes(),
+                     [&](const auto& index) { all = all && is_in(lattice_place<N>(grid, index, layers)); });
+  return all;
 }
 
 /// Whether there are prisms between all times: these are apart from space, and ascend or descend.
@@ -85,7 +95,7 @@ class LatticeWriter {
 
   /// `read`: for the samples' type. `places`: of samples, in place of those on the grid; null: none.
   LatticeWriter(const SampleSource<N>& source, ReadSamples read, const Grid<N>& grid, Lattice lattice,
-                const LatticeRows& rows, const LatticeGradients<N>* gradients,
+                const LatticeRows& rows, const LatticeGradients<N>* gradients, const RowGradients<N>* row_gradients,
                 const std::vector<std::array<double, N>>* places, const ExtractOptions& options,
                 Contour<N, Real>& contour)
       : source_(source),
@@ -93,6 +103,7 @@ class LatticeWriter {
         grid_(grid),
         rows_(rows),
         gradients_(gradients),
+        row_gradients_(row_gradients),
         places_(places),
         layers_(layer_axis(lattice)),
         is_layered_(lattice == Lattice::fcc_in_time && places == nullptr),
@@ -137,6 +148,7 @@ class LatticeWriter {
       edges.out = contour_.vertices.data() + rows_.row(r).first + at;
       edges.end = contour_.vertices.data() + rows_.row(r).first_own;
       write_row(edges, sample(row, {}), sample(row, kinds[kind].to));
+      if (gradients_ != nullptr) write_normals(edges, r, kinds[kind].to);
       if (!is_layered_ || kinds[kind].to[N - 1] == 0) continue;
       const auto [low, high] = times_after(row);
       for (Vertex& vertex : std::span(edges.out, more)) vertex[N - 1] = std::clamp(vertex[N - 1], low, high);
@@ -198,7 +210,7 @@ class LatticeWriter {
     return inside_of<Real>(time({}), time({0, 0, 0, 1}));
   }
 
-  /// Writes the vertices and normals on edges from samples of one row to those of another. `from`, `to`: the ends of
+  /// Writes the vertices on edges from samples of one row to those of another. `from`, `to`: the ends of
   /// the edge of the row's first sample.
   void write_row(LatticePoints<N, Real>& edges, const Sample& from, const Sample& to) const noexcept {
     if (places_ == nullptr) {
@@ -210,17 +222,23 @@ class LatticeWriter {
       edges.mapped = grid_.has_world_map() ? &grid_ : nullptr;
       write_points(edges);
     }
-    if (places_ == nullptr && gradients_ == nullptr) return;
+    if (places_ == nullptr) return;
     for (std::size_t i = 0; i < edges.count; ++i) {
       Sample a = from, b = to;
       a[0] += edges.at[i];
       b[0] += edges.at[i];
-      if (places_ != nullptr)
-        edges.out[i] = point_on_edge<Real>((*places_)[number_of<N>(grid_, a)], (*places_)[number_of<N>(grid_, b)],
-                                           edges.alphas[i]);
-      if (gradients_ == nullptr) continue;
-      const auto number = static_cast<std::size_t>(edges.out - contour_.vertices.data()) + i;
-      contour_.normals[number] = gradients_->template normal<Real>(a, b, edges.alphas[i]);
+      edges.out[i] =
+          point_on_edge<Real>((*places_)[number_of<N>(grid_, a)], (*places_)[number_of<N>(grid_, b)], edges.alphas[i]);
+    }
+  }
+  /// The normals of the vertices on edges of row r to the samples at these differences.
+  void write_normals(const LatticePoints<N, Real>& edges, std::size_t r, const LatticePlace& to) const noexcept {
+    const std::size_t other = r + rows_.steps(to);
+    Vertex* const normals = contour_.normals.data() + (edges.out - contour_.vertices.data());
+    for (std::size_t i = 0; i < edges.count; ++i) {
+      const std::size_t at = edges.at[i];
+      normals[i] = gradients_->template normal_between<Real>(
+          row_gradients_->at(r, at), row_gradients_->at(other, at + static_cast<std::size_t>(to[0])), edges.alphas[i]);
     }
   }
 
@@ -291,6 +309,7 @@ class LatticeWriter {
   const Grid<N>& grid_;
   const LatticeRows& rows_;
   const LatticeGradients<N>* gradients_;
+  const RowGradients<N>* row_gradients_;
   const std::vector<std::array<double, N>>* places_;
   int layers_;       ///< the axis of the layers
   bool is_layered_;  ///< whether cells are between two layers of the last axis
@@ -324,20 +343,28 @@ bool extract_by_rows(SampleSource<N>& source, ReadSamples read, const Grid<N>& g
   result.contour.vertices.resize(rows.vertices());
   result.contour.simplices.resize(rows.simplices());
   std::optional<LatticeGradients<N>> gradients;
+  std::optional<RowGradients<N>> row_gradients;
+  const double start = options.normals == Normals::none ? 0.5 : 0.7;
   if (options.normals != Normals::none) {
     gradients.emplace(source, grid, lattice, options.direction);
+    row_gradients.emplace(rows, patterns, *gradients, WorkOptions{threads, part_of(progress, 0.5, start)});
     result.contour.normals.resize(rows.vertices());
   }
-  const LatticeWriter<N, Real> writer(source, read, grid, lattice, rows, gradients ? &*gradients : nullptr, places,
-                                      options, result.contour);
-  for_each_part(rows.row_count(), threads, part_of(progress, 0.5, 0.75), [&](std::size_t from, std::size_t to) {
-    typename LatticeWriter<N, Real>::Scratch scratch;
-    for (std::size_t r = from; r < to; ++r) writer.write_edge_points(r, scratch);
-  });
-  for_each_part(rows.row_count(), threads, part_of(progress, 0.75, 1.0), [&](std::size_t from, std::size_t to) {
-    typename LatticeWriter<N, Real>::Scratch scratch;
-    for (std::size_t r = from; r < to; ++r) writer.write_cells(r, scratch);
-  });
+  const LatticeWriter<N, Real> writer(source, read, grid, lattice, rows, gradients ? &*gradients : nullptr,
+                                      row_gradients ? &*row_gradients : nullptr, places, options, result.contour);
+  using Scratch = typename LatticeWriter<N, Real>::Scratch;
+  const auto for_rows = [&](const Progress& of, const auto& write) {
+    constexpr std::size_t kRows = 64;
+    for_each_block(
+        rows.row_count(), kRows, threads, of, [] { return Scratch(); },
+        [&](std::size_t, std::size_t from, std::size_t to, Scratch& scratch) {
+          for (std::size_t r = from; r < to; ++r) write(r, scratch);
+        });
+  };
+  const double middle = 0.5 * (1.0 + start);
+  for_rows(part_of(progress, start, middle),
+           [&](std::size_t r, Scratch& scratch) { writer.write_edge_points(r, scratch); });
+  for_rows(part_of(progress, middle, 1.0), [&](std::size_t r, Scratch& scratch) { writer.write_cells(r, scratch); });
   watch.add_to(result.stats.generate_seconds);
   return true;
 }
@@ -351,8 +378,8 @@ Extraction<N, Real> extract_on_lattice(const Image<T, N>& image, Lattice lattice
   check_lattice_arguments<N>(image.grid(), lattice, isovalue, options, periods);
   const Grid<N>& grid = image.grid();
   Extraction<N, Real> result;
-  if (periodic_axes<N>(periods) == 0 && !options.close && has_rows(lattice, options) && is_in_range<Real>(grid) &&
-      (lattice != Lattice::fcc_in_time || has_prisms(grid))) {
+  if (periodic_axes<N>(periods) == 0 && !options.close && has_rows(lattice, options) &&
+      is_in_range<Real>(grid, layer_axis(lattice)) && (lattice != Lattice::fcc_in_time || has_prisms(grid))) {
     check_grid(grid, lattice, layer_axis(lattice));
     (void)count_samples(grid, "a lattice");
     ImageSource<T, N> samples(image, isovalue, options.epsilon);

@@ -35,10 +35,10 @@ class LatticeGradients {
   LatticeGradients(const CornerValues<N>& values, const Grid<N>& grid, Lattice lattice, GradientDirection direction,
                    const AxisPeriods<N>& periods = {});
 
-  /// The unit normal at `alpha` between two samples, on the side of the direction; 0 if the gradient is zero.
+  /// The unit normal at `alpha` between two samples with these gradients, on the side of the direction; 0 if the
+  /// gradient is zero.
   template <class Real>
-  [[nodiscard]] std::array<Real, N> normal(const Sample& from, const Sample& to, double alpha) const {
-    const Gradient a = at(from), b = at(to);
+  [[nodiscard]] std::array<Real, N> normal_between(const Gradient& a, const Gradient& b, double alpha) const {
     Gradient sum;
     for (int i = 0; i < N; ++i) sum[i] = sign_ * ((1.0 - alpha) * a[i] + alpha * b[i]);
     return unit<Real>(sum);

@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "base/progress.hpp"
 #include "complex/built_cells.hpp"
 #include "complex/cell_groups.hpp"
 #include "image/bitplanes.hpp"
@@ -212,6 +213,8 @@ void add_contours(LatticePatterns& patterns, const OccurringSignatures& signatur
   std::map<CellShape, bool> shapes;  // and whether they are swept
   for (const LayerPattern& pattern : patterns)
     for (const LatticeCell& cell : pattern.cells) shapes[cell.shape] = cell.is_swept;
+  double done = 0.0;
+  const double each = 1.0 / static_cast<double>(shapes.size());
   for (const auto& [shape, is_swept] : shapes) {
     CompactCells contours(shape, ambiguity == Ambiguity::high, is_swept);
     const std::vector<KeyOfSignature> of_shape = keys_of(patterns, shape, signatures, contours);
@@ -219,7 +222,8 @@ void add_contours(LatticePatterns& patterns, const OccurringSignatures& signatur
     for (const KeyOfSignature& of : of_shape) keys.push_back(of.key);
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    contours.build(std::move(keys), {work.threads, nullptr});
+    contours.build(std::move(keys), {work.threads, part_of(work.progress, done, done + each)});
+    done += each;
     for (const KeyOfSignature& of : of_shape)
       add_contour(*of.cell, table_of(shape), of.signature, contours.contour(contours.variant(of.key)));
   }

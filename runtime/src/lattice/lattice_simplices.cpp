@@ -104,8 +104,10 @@ std::size_t list_active(const LatticeCellRow& row, ActiveInRow* out) {
 }
 
 std::uint32_t mark_active(const LatticeCellRow& row, std::atomic<bool>* occurs) {
-  return for_each_active(
-      row, [&](std::size_t, unsigned signature) HWY_ATTR { occurs[signature].store(true, std::memory_order_relaxed); });
+  return for_each_active(row, [&](std::size_t, unsigned signature) HWY_ATTR {
+    // most are marked: a store would take the memory from other threads
+    if (!occurs[signature].load(std::memory_order_relaxed)) occurs[signature].store(true, std::memory_order_relaxed);
+  });
 }
 
 LatticeCellCount count_active(const LatticeCellRow& row) {
