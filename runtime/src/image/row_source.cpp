@@ -148,6 +148,21 @@ void RowSource<T, N>::cell_alphas(const Index& base, unsigned axes, std::uint32_
   for (; edges != 0; edges &= edges - 1) out[std::countr_zero(edges)] = *next++;
 }
 
+template <Value T, int N>
+template <int K>
+void RowSource<T, N>::alphas_together(const CellsWithEdges<N, K>& cells,
+                                      typename CellsWithEdges<N, K>::Alphas& out) const noexcept {
+  // All edges: faster than gathering those asked for.
+  constexpr std::size_t kPitch = CellsWithEdges<N, K>::kMost;
+  std::array<std::array<double, kPitch>, std::size_t{1} << K> corners;
+  std::array<double, std::size_t{1} << N> values;
+  for (std::size_t i = 0; i < cells.count; ++i) {
+    corner_values(cells.bases[i], cells.axes[i], values.data());
+    for (std::size_t v = 0; v < corners.size() && v < values.size(); ++v) corners[v][i] = values[v];
+  }
+  alphas_of_cells(K, corners[0].data(), cells.count, kPitch, this->isovalue(), epsilon_, out[0].data());
+}
+
 namespace {
 
 /// Locations of the values around edges along one axis. `from`, by place: the layer that contains the value, displaced

@@ -41,6 +41,14 @@ class RowSource : public SampleSource<N> {
     detail::alphas_between(from, to, count, this->isovalue(), epsilon_, out);
   }
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;
+  void cells_alphas(const CellsWithEdges<N, 3>& cubes,
+                    typename CellsWithEdges<N, 3>::Alphas& out) const noexcept final {
+    alphas_together(cubes, out);
+  }
+  void cells_alphas(const CellsWithEdges<N, 4>& tesseracts,
+                    typename CellsWithEdges<N, 4>::Alphas& out) const noexcept final {
+    alphas_together(tesseracts, out);
+  }
   [[nodiscard]] AroundEdges<N, double> around_edges() const noexcept final;
   [[nodiscard]] AroundEdges<N, float> around_edges_in_float() const noexcept final;
   [[nodiscard]] std::array<double, N> gradient(const Index& index,
@@ -65,6 +73,8 @@ class RowSource : public SampleSource<N> {
   using EdgeCrossings<N>::strides;
 
   double corner_heights(const Index& base, unsigned axes, double* out) const noexcept final;
+  template <int K>
+  void alphas_together(const CellsWithEdges<N, K>& cells, typename CellsWithEdges<N, K>::Alphas& out) const noexcept;
 
   [[nodiscard]] const T* row(const Index& start) const noexcept {
     const T* at = layer(start[N - 1]);

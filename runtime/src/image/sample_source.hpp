@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -105,6 +106,19 @@ struct LayerInMemory {
   std::ptrdiff_t sample_bytes = 0;   ///< from a sample to the next one of its row
 };
 
+/// Some cells of K axes, and edges of each (bit masks).
+template <int N, int K>
+struct CellsWithEdges {
+  static constexpr std::size_t kMost = CubeRays::kMost;
+  /// By local edge and cell.
+  using Alphas = std::array<std::array<double, kMost>, std::size_t{K} << (K - 1)>;
+
+  const std::uint8_t* axes;
+  const SampleIndex<N>* bases;
+  const std::uint32_t* edges;
+  std::size_t count;  ///< at most kMost
+};
+
 /// Intersections of the contour with edges of the grid, as interpolation parameters: 0 at an edge's first end, 1 at its
 /// second, clamped to [epsilon, 1 - epsilon]. Also the data of intersections with rays inside cells.
 template <int N>
@@ -122,6 +136,15 @@ class EdgeCrossings {
   /// edge e to out[e]. `out` has an entry for each edge of the cell; the other entries are undefined.
   virtual void cell_alphas(const SampleIndex<N>& base, unsigned axes, std::uint32_t edges,
                            double* out) const noexcept = 0;
+  /// The same for several cells. The other entries of `out` are undefined.
+  virtual void cells_alphas(const CellsWithEdges<N, 3>& cubes,
+                            typename CellsWithEdges<N, 3>::Alphas& out) const noexcept {
+    alphas_one_by_one(cubes, out);
+  }
+  virtual void cells_alphas(const CellsWithEdges<N, 4>& tesseracts,
+                            typename CellsWithEdges<N, 4>::Alphas& out) const noexcept {
+    alphas_one_by_one(tesseracts, out);
+  }
   /// Heights of the cell along K `axes` based at `base`: 3 (CubeHeights), 4 or 5 (TileHeights).
   template <int K>
   [[nodiscard]] CellHeights<K> heights(const SampleIndex<N>& base, unsigned axes) const noexcept {
@@ -135,6 +158,17 @@ class EdgeCrossings {
   ~EdgeCrossings() = default;
 
  private:
+  template <int K>
+  void alphas_one_by_one(const CellsWithEdges<N, K>& cells, typename CellsWithEdges<N, K>::Alphas& out) const noexcept {
+    std::array<double, std::tuple_size_v<typename CellsWithEdges<N, K>::Alphas>> alphas;
+    for (std::size_t i = 0; i < cells.count; ++i) {
+      cell_alphas(cells.bases[i], cells.axes[i], cells.edges[i], alphas.data());
+      for (std::uint32_t rest = cells.edges[i]; rest != 0; rest &= rest - 1) {
+        const auto e = static_cast<unsigned>(std::countr_zero(rest));
+        out[e][i] = alphas[e];
+      }
+    }
+  }
   /// Writes the samples at the corners of the cell along `axes` based at `base`, minus the isovalue, in the order of
   /// the cell's own corners. Returns epsilon.
   virtual double corner_heights(const SampleIndex<N>& base, unsigned axes, double* out) const noexcept = 0;

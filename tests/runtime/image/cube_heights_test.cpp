@@ -13,7 +13,6 @@
 #include <gtest/gtest.h>
 
 #include "image/cell_heights.hpp"
-#include "image/edge_alphas.hpp"
 #include "image/rays_of_tiles.hpp"
 #include "image/row_source.hpp"
 #include "only_targets.hpp"
@@ -339,7 +338,7 @@ TEST(CubeHeights, OfManyRaysAreThoseOfEach) {
 
 template <int K>
 void expect_alphas_of_each_cell() {
-  constexpr std::size_t kCells = CubeRays::kMost;
+  using Cells = CellsWithEdges<4, K>;
   constexpr unsigned kEdges = static_cast<unsigned>(K) << (K - 1);
   std::mt19937 random(9);
   for (unsigned kind = 0; kind < 4; ++kind) {
@@ -348,10 +347,9 @@ void expect_alphas_of_each_cell() {
       for (const double height : random_heights(random, kind)) values.push_back(height);
     const Image<double, 4> image(values.data(), Grid<4>::unit({4, 4, 4, 8}));
     const ImageSource<double, 4> source(image, 0.0, 0.01);
-    std::array<SampleIndex<4>, kCells> bases;
-    std::array<std::uint32_t, kCells> edges;
-    std::array<std::uint8_t, kCells> axes;
-    std::array<std::array<double, kCells>, std::size_t{1} << K> corners;
+    std::array<SampleIndex<4>, Cells::kMost> bases;
+    std::array<std::uint32_t, Cells::kMost> edges;
+    std::array<std::uint8_t, Cells::kMost> axes;
     for (unsigned trial = 0; trial < 20; ++trial) {
       std::size_t count = 0;
       for (; count < bases.size() - kind; ++count) {
@@ -359,7 +357,6 @@ void expect_alphas_of_each_cell() {
         axes[count] = static_cast<std::uint8_t>(K == 4 ? 15u : 15u ^ 1u << random() % 4);
         std::array<double, std::size_t{1} << K> at_corners;
         source.corner_values(bases[count], axes[count], at_corners.data());
-        for (std::size_t v = 0; v < corners.size(); ++v) corners[v][count] = at_corners[v];
         edges[count] = 0;
         for (unsigned e = 0; e < kEdges; ++e) {
           const unsigned base = edge_base(K, e);
@@ -367,8 +364,8 @@ void expect_alphas_of_each_cell() {
           edges[count] |= static_cast<std::uint32_t>(is_critical && random() % 4 != 0) << e;
         }
       }
-      std::array<std::array<double, kCells>, kEdges> together;
-      alphas_of_cells(K, corners[0].data(), count, kCells, 0.0, 0.01, together[0].data());
+      typename Cells::Alphas together;
+      source.cells_alphas(Cells{axes.data(), bases.data(), edges.data(), count}, together);
       for (std::size_t i = 0; i < count; ++i) {
         std::array<double, kEdges> alone;
         source.cell_alphas(bases[i], axes[i], edges[i], alone.data());
