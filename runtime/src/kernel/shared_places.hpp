@@ -207,6 +207,9 @@ class ResolvedPlaces {
     return mask_mean<4>(points, std::identity(), on_edge(edges), true);
   }
 
+  /// Whether own vertices with these masks, all combined, depend on vertices on edges. Not if all are copies of
+  /// corners.
+  static bool needs_edges(std::uint64_t masks) noexcept { return masks >> 16 != 0; }
   /// Calls write(j, position) for all own vertices of a filling (ResolvedView::masks).
   template <class Write>
   void own_vertices(const ResolvedView& filling, const Write& write) noexcept {
