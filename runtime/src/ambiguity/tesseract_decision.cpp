@@ -280,34 +280,26 @@ void resolve(const FaceEstimator<4>& estimator, const FaceBlock<4>& block, Tesse
 /// Lists the word's ambiguous tiles from `ordinal` on and, if they are many, resolves them.
 void RowOfTesseracts::begin_word(std::size_t word, std::uint32_t ordinal) noexcept {
   const auto& ambiguous = ambiguous_signatures<4>();
-  TesseractsOfWord& of = of_word_;
-  of.word = word;
-  of.first = ordinal;
-  of.count = 0;
+  word_ = word;
+  first_ = ordinal;
+  of_word_.count = 0;
   for (std::uint32_t i = ordinal; i < tiles_.count && tiles_.at[i] / kWordBits == word; ++i) {
     const unsigned signature = tiles_.signatures[i];
-    of.numbers[i - ordinal] = static_cast<std::uint8_t>(of.count);
-    of.bits[of.count] = static_cast<std::uint8_t>(tiles_.at[i] % kWordBits);
-    of.signatures[of.count] = static_cast<std::uint16_t>(signature);
-    of.count += ambiguous[signature] ? 1 : 0;
+    number_[i - ordinal] = static_cast<std::uint8_t>(of_word_.count);
+    of_word_.bits[of_word_.count] = static_cast<std::uint8_t>(tiles_.at[i] % kWordBits);
+    of_word_.signatures[of_word_.count] = static_cast<std::uint16_t>(signature);
+    of_word_.count += ambiguous[signature] ? 1 : 0;
   }
-  of.has_many = of.count >= RowFaces<4>::kMany;
-  if (of.has_many) detail::resolve(estimator_, faces_.look_at(word), of);
-}
-
-void RowOfTesseracts::prepare() noexcept {
-  if (!at_once_) return;
-  std::uint32_t i = 0;
-  while (i < tiles_.count && !ambiguous_signatures<4>()[tiles_.signatures[i]]) ++i;
-  if (i < tiles_.count) begin_word(tiles_.at[i] / kWordBits, i);
+  has_many_ = of_word_.count >= RowFaces<4>::kMany;
+  if (has_many_) detail::resolve(estimator_, faces_.look_at(word), of_word_);
 }
 
 const ResolvedTile& RowOfTesseracts::resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
                                              unsigned signature) noexcept {
   if (at_once_ && ambiguous_signatures<4>()[signature]) {
-    if (base[0] / kWordBits != of_word_.word) begin_word(base[0] / kWordBits, ordinal);
-    const std::size_t number = of_word_.numbers[ordinal - of_word_.first];
-    if (of_word_.has_many && (of_word_.unsure >> number & 1u) == 0) return of_word_.tiles[number];
+    if (base[0] / kWordBits != word_) begin_word(base[0] / kWordBits, ordinal);
+    const std::size_t number = number_[ordinal - first_];
+    if (has_many_ && (of_word_.unsure >> number & 1u) == 0) return of_word_.tiles[number];
   }
   return alone_ = resolved_tile(estimator_, base, signature);
 }

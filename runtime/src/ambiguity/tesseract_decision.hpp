@@ -30,10 +30,6 @@ ResolvedTile resolved_tile(const FaceEstimator<4>& estimator, const std::array<s
                            unsigned signature) noexcept;
 /// The ambiguous tiles of a word, and their resolutions.
 struct TesseractsOfWord {
-  std::size_t word = ~std::size_t{0};
-  bool has_many = false;                        ///< whether they are resolved at once
-  std::uint32_t first = 0;                      ///< ordinal in the row of the first of them
-  std::array<std::uint8_t, kWordBits> numbers;  ///< by ordinal from there on
   std::size_t count = 0;
   std::array<std::uint8_t, kWordBits> bits;
   std::array<std::uint16_t, kWordBits> signatures;
@@ -47,19 +43,13 @@ class RowOfTesseracts {
  public:
   /// For the row of `base`, which has `samples` samples. `tiles`: its active tiles.
   /// `of_word`: room for the tiles of a word. It is large, and making it costs more than a row of few tiles.
-  /// `is_prepared`: `of_word` was prepared for this row.
   RowOfTesseracts(const FaceEstimator<4>& estimator, const std::array<std::size_t, 4>& base, std::size_t samples,
-                  const RowTiles& tiles, TesseractsOfWord& of_word, bool is_prepared = false) noexcept
+                  const RowTiles& tiles, TesseractsOfWord& of_word) noexcept
       : estimator_(estimator),
         tiles_(tiles),
         at_once_(samples <= kMostListed && RowFaces<4>::can_use(estimator)),
         faces_(estimator, base, samples),
-        of_word_(of_word) {
-    if (!is_prepared) of_word_.word = ~std::size_t{0};
-  }
-  /// Resolves the first word with an ambiguous tile. If this is done for some rows first and their tiles are assembled
-  /// later, the code of each step stays in the nearest cache.
-  void prepare() noexcept;
+        of_word_(of_word) {}
   /// Resolves number `ordinal` of the active tiles, based at `base`. Ordinals must increase from call to call. The
   /// result is valid until the next call.
   const ResolvedTile& resolve(const std::array<std::size_t, 4>& base, std::uint32_t ordinal,
@@ -71,9 +61,13 @@ class RowOfTesseracts {
   const FaceEstimator<4>& estimator_;
   RowTiles tiles_;
   bool at_once_;
+  std::size_t word_ = ~std::size_t{0};
+  bool has_many_ = false;  ///< whether the word is decided at once
   RowFaces<4> faces_;
   TesseractsOfWord& of_word_;
-  ResolvedTile alone_;  ///< the last one not resolved at once
+  std::uint32_t first_ = 0;                     ///< ordinal of the word's first tile resolved at once
+  std::array<std::uint8_t, kWordBits> number_;  ///< by ordinal from there on: number in of_word_
+  ResolvedTile alone_;                          ///< the last one not resolved at once
 };
 
 }  // namespace tegl::detail

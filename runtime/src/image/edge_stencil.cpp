@@ -345,9 +345,7 @@ HWY_INLINE void convert(const T* from, std::size_t count, Calc* out) {
   const hn::ScalableTag<Calc> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   std::size_t i = 0;
-  const auto some = [&](std::size_t at) HWY_ATTR { hn::StoreU(load_values(d, from + at), d, out + at); };
-  for (; i + kLanes <= count; i += kLanes) some(i);
-  if (i < count && count >= kLanes) return some(count - kLanes);  // some are converted twice
+  for (; i + kLanes <= count; i += kLanes) hn::StoreU(load_values(d, from + i), d, out + i);
   for (; i < count; ++i) out[i] = static_cast<Calc>(from[i]);
 }
 

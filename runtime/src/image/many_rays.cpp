@@ -32,13 +32,6 @@ using RayTag = hn::CappedTag<double, 8>;
 using RayLanes = hn::Vec<RayTag>;
 using RayMask = hn::Mask<RayTag>;
 
-/// Replaces two values by their sum and the second minus the first.
-HWY_INLINE void pair(RayLanes& low, RayLanes& high) {
-  const auto sum = hn::Add(high, low);
-  high = hn::Sub(high, low);
-  low = sum;
-}
-
 /// A polynomial in each lane, the constant coefficient first.
 template <std::size_t Count>
 struct RayPolynomials {
@@ -61,10 +54,8 @@ struct RayPolynomials {
   }
 };
 
-/// The interpolant on rays of a tesseract. `product(set)`: coefficient of TileHeights. `u`: by axis 2 x - 1 of their
-/// ends.
-template <class Product>
-HWY_INLINE RayPolynomials<5> tesseract_polynomials(const Product& product, const RayLanes (&u)[4]) {
+/// The interpolant on rays of a tesseract. `u`: by axis 2 x - 1 of their ends.
+HWY_INLINE RayPolynomials<5> tesseract_polynomials(const std::array<double, 16>& products, const RayLanes (&u)[4]) {
   // Unrolled, so that the coefficients stay in registers. The weight of a set of axes is the product of u over them.
   return [&]<std::size_t... Set>(std::index_sequence<Set...>) HWY_ATTR {
     const RayTag d;
@@ -78,7 +69,7 @@ HWY_INLINE RayPolynomials<5> tesseract_polynomials(const Product& product, const
         weights[S] = hn::Mul(weights[S ^ std::size_t{1} << kLast], u[kLast]);
       }
       constexpr int kDegree = std::popcount(S);
-      sums[kDegree] = hn::Add(sums[kDegree], hn::Mul(hn::Set(d, product(S)), weights[S]));
+      sums[kDegree] = hn::Add(sums[kDegree], hn::Mul(hn::Set(d, products[S]), weights[S]));
     };
     (add(std::integral_constant<std::size_t, Set>{}), ...);
     return RayPolynomials<5>{{sums[0], sums[1], sums[2], sums[3], sums[4]}};
@@ -196,7 +187,7 @@ void levels_of_tesseract(const std::array<double, 16>& products, double epsilon,
   const auto polynomials_at = [&](std::size_t i) HWY_ATTR {
     RayLanes u[4];
     for (std::size_t a = 0; a < 4; ++a) u[a] = hn::Sub(hn::Mul(two, hn::Load(d, rays.ends[a].data() + i)), one);
-    return tesseract_polynomials([&](std::size_t set) { return products[set]; }, u);
+    return tesseract_polynomials(products, u);
   };
   const auto wanted_at = [&](std::size_t i) HWY_ATTR { return hn::FirstN(d, rays.count - i); };
   const auto store = [&](std::size_t i, const RayPolynomials<5>& polynomials, RayLanes root)
@@ -215,131 +206,64 @@ void levels_of_tesseract(const std::array<double, 16>& products, double epsilon,
 
 static_assert(TesseractRays::kMost <= RaysOfTiles::kMost);
 
-/// By corner or set of axes, and by tile: the heights of tiles, or the coefficients of their interpolants
-/// (TileHeights).
-using OfTiles = std::array<std::array<double, RaysOfTiles::kMostTiles>, 16>;
-
-/// The coefficients of all tiles: the transform of TileHeights, with a tile in each lane.
-HWY_INLINE void find_products(double isovalue, const RaysOfTiles& rays, OfTiles& products) {
-  const RayTag d;
-  const auto threshold = hn::Set(d, isovalue);
-  for (std::size_t i = 0; i < rays.tiles; i += hn::Lanes(d)) {
-    RayLanes values[16];
-    for (std::size_t v = 0; v < 16; ++v) values[v] = hn::Sub(hn::Load(d, rays.samples[v].data() + i), threshold);
-    const auto transform = [&]<std::size_t Step>(std::integral_constant<std::size_t, Step>) HWY_ATTR {
-      [&]<std::size_t... I>(std::index_sequence<I...>) HWY_ATTR {
-        (pair(values[I / Step * 2 * Step + I % Step], values[I / Step * 2 * Step + I % Step + Step]), ...);
-      }
-      (std::make_index_sequence<8>());
-    };
-    transform(std::integral_constant<std::size_t, 1>{});
-    transform(std::integral_constant<std::size_t, 2>{});
-    transform(std::integral_constant<std::size_t, 4>{});
-    transform(std::integral_constant<std::size_t, 8>{});
-    for (std::size_t set = 0; set < 16; ++set) hn::Store(values[set], d, products[set].data() + i);
-  }
-}
-
 /// A register of rays of one tile.
 struct RayRegister {
-  std::size_t tile;
+  const RaysOfTiles::Tile* tile;
   std::size_t at;      ///< place of the first ray
   std::size_t wanted;  ///< lanes with a ray
 };
 
-/// The ends of rays along an axis.
-template <unsigned Axis>
-HWY_INLINE RayLanes ends_along(const RaysOfTiles& rays, std::size_t at) {
-  constexpr std::uint64_t kUpper[4] = {0xaaaa, 0xcccc, 0xf0f0, 0xff00};  // corners at 1
+HWY_INLINE RayPolynomials<5> polynomials_on(const RaysOfTiles& rays, const RayRegister& of) {
   const RayTag d;
-  const hn::RebindToUnsigned<RayTag> bits;
-  const auto corners = hn::Load(bits, rays.corners.data() + at), none = hn::Zero(bits);
-  const auto is_upper = hn::RebindMask(d, hn::Ne(hn::And(corners, hn::Set(bits, kUpper[Axis])), none));
-  const auto is_other = hn::RebindMask(d, hn::Eq(corners, none));
-  return hn::IfThenElse(is_other, hn::Load(d, rays.ends[Axis].data() + at),
-                        hn::IfThenElseZero(is_upper, hn::Set(d, 1.0)));
+  RayLanes u[4];
+  for (std::size_t a = 0; a < 4; ++a)
+    u[a] = hn::Sub(hn::Mul(hn::Set(d, 2.0), hn::Load(d, rays.ends[a].data() + of.at)), hn::Set(d, 1.0));
+  return tesseract_polynomials(of.tile->products, u);
 }
 
-/// Rays of a register.
-struct RaysTogether {
-  RayLanes ends[4];
-  RayPolynomials<5> polynomials;
-
-  HWY_INLINE RaysTogether(const RaysOfTiles& rays, const OfTiles& products, const RayRegister& of)
-      : ends{ends_along<0>(rays, of.at), ends_along<1>(rays, of.at), ends_along<2>(rays, of.at),
-             ends_along<3>(rays, of.at)},
-        polynomials(polynomials_to(products, of.tile)) {}
-
- private:
-  HWY_INLINE RayPolynomials<5> polynomials_to(const OfTiles& products, std::size_t tile) const {
-    RayLanes u[4];
-    for (std::size_t a = 0; a < 4; ++a)
-      u[a] = hn::Sub(hn::Mul(hn::Set(RayTag(), 2.0), ends[a]), hn::Set(RayTag(), 1.0));
-    return tesseract_polynomials([&](std::size_t set) { return products[set][tile]; }, u);
-  }
-};
-
-/// Coordinates along one axis, at `x` from 0 to 1, in boxes.
-HWY_INLINE RayLanes coordinate_at(RayLanes x, RayLanes from, RayLanes to) {
+/// The coordinate along one axis of points at `level` on rays to `end`, in a box.
+HWY_INLINE RayLanes coordinate_on(RayLanes end, RayLanes level, double box_from, double box_to) {
   const RayTag d;
-  // std::min and std::max
-  const auto is_down = hn::Lt(to, from);
-  const auto least = hn::IfThenElse(is_down, to, from), most = hn::IfThenElse(is_down, from, to);
-  auto point = hn::Add(from, hn::Mul(x, hn::Sub(to, from)));
+  const auto half = hn::Set(d, 0.5), from = hn::Set(d, box_from), to = hn::Set(d, box_to), step = hn::Sub(to, from);
+  const auto least = hn::Set(d, std::min(box_from, box_to)), most = hn::Set(d, std::max(box_from, box_to));
+  const auto x = hn::Add(half, hn::Mul(level, hn::Sub(end, half)));
+  auto point = hn::Add(from, hn::Mul(x, step));
   point = hn::IfThenElse(hn::Gt(least, point), least, point);
   point = hn::IfThenElse(hn::Gt(point, most), most, point);
   return hn::IfThenElse(hn::Ge(x, hn::Set(d, 1.0)), to, point);
 }
 
-HWY_INLINE void store_points(RaysOfTiles& rays, const OfTiles& products, const RayRegister& of, const RayLanes* ends,
-                             RayLanes level) {
+HWY_INLINE void store_points(RaysOfTiles& rays, const RayRegister& of, RayLanes level) {
   const RayTag d;
-  const auto half = hn::Set(d, 0.5);
-  if (!is_finite_enough(products[0][of.tile])) level = half;
-  const TileBox& box = rays.boxes[of.tile];
+  if (!is_finite_enough(of.tile->products[0])) level = hn::Set(d, 0.5);
   for (std::size_t a = 0; a < 4; ++a) {
-    const auto x = hn::Add(half, hn::Mul(level, hn::Sub(ends[a], half)));
-    hn::Store(coordinate_at(x, hn::Set(d, box.from[a]), hn::Set(d, box.to[a])), d, rays.ends[a].data() + of.at);
+    double* const end = rays.ends[a].data() + of.at;
+    hn::Store(coordinate_on(hn::Load(d, end), level, of.tile->box.from[a], of.tile->box.to[a]), d, end);
   }
 }
 
 template <std::size_t... I>
-HWY_INLINE void place_registers(RaysOfTiles& rays, const OfTiles& products, const RayRegister* of,
-                                const LevelsInside& inside, std::index_sequence<I...>) {
-  const RaysTogether together[] = {RaysTogether(rays, products, of[I])...};
-  RootSearch<5> searches[] = {RootSearch<5>(together[I].polynomials, hn::FirstN(RayTag(), of[I].wanted))...};
+HWY_INLINE void place_registers(RaysOfTiles& rays, const RayRegister* of, const LevelsInside& inside,
+                                std::index_sequence<I...>) {
+  const RayPolynomials<5> polynomials[] = {polynomials_on(rays, of[I])...};
+  RootSearch<5> searches[] = {RootSearch<5>(polynomials[I], hn::FirstN(RayTag(), of[I].wanted))...};
   for (int step = 0; step < kMostSteps && !(searches[I].has_ended() && ...); ++step) (searches[I].step(), ...);
-  (store_points(rays, products, of[I], together[I].ends,
-                level_of_root(together[I].polynomials, searches[I].root(), inside)),
-   ...);
+  (store_points(rays, of[I], level_of_root(polynomials[I], searches[I].root(), inside)), ...);
 }
 
-void points_on_rays_of_tiles(double isovalue, double epsilon, RaysOfTiles& rays) {
-  alignas(64) OfTiles products;
-  find_products(isovalue, rays, products);
+void points_on_rays_of_tiles(double epsilon, RaysOfTiles& rays) {
   constexpr std::size_t kLanes = hn::MaxLanes(RayTag());
   constexpr std::size_t kTogether = kLanes == 8 ? 4 : 2;  // more do not fit into the registers that there are
   std::array<RayRegister, RaysOfTiles::kMost / kLanes> registers;
   std::size_t count = 0;
   for (std::size_t g = 0; g < rays.groups; ++g)
     for (std::size_t i = 0; i < rays.rays_in[g]; i += kLanes)
-      registers[count++] = {rays.tile_of[g], RaysOfTiles::kGroup * g + i, rays.rays_in[g] - i};
+      registers[count++] = {&rays.of_tiles[rays.tile_of[g]], RaysOfTiles::kGroup * g + i, rays.rays_in[g] - i};
   const LevelsInside inside(epsilon);
   std::size_t i = 0;
   for (; i + kTogether <= count; i += kTogether)
-    place_registers(rays, products, registers.data() + i, inside, std::make_index_sequence<kTogether>());
-  for (; i < count; ++i) place_registers(rays, products, registers.data() + i, inside, std::make_index_sequence<1>());
-}
-
-void points_in_boxes(std::size_t count, PointsInBoxes& points) {
-  const RayTag d;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const auto along = [&](std::size_t a) HWY_ATTR {
-      return coordinate_at(hn::Load(d, points.at[a].data() + i), hn::Load(d, points.from[a].data() + i),
-                           hn::Load(d, points.to[a].data() + i));
-    };
-    hn::StoreInterleaved4(along(0), along(1), along(2), along(3), d, points.points[i].data());
-  }
+    place_registers(rays, registers.data() + i, inside, std::make_index_sequence<kTogether>());
+  for (; i < count; ++i) place_registers(rays, registers.data() + i, inside, std::make_index_sequence<1>());
 }
 
 /// Levels of rays to squares, on which the interpolant is linear. `a`: sum of all heights.
@@ -440,7 +364,6 @@ namespace tegl::detail {
 HWY_EXPORT(levels_of_tesseract);
 HWY_EXPORT(levels_of_cubes);
 HWY_EXPORT(points_on_rays_of_tiles);
-HWY_EXPORT(points_in_boxes);
 
 void find_levels(const std::array<double, 16>& products, double epsilon, TesseractRays& rays) noexcept {
   if (is_finite_enough(products[0]))
@@ -449,12 +372,8 @@ void find_levels(const std::array<double, 16>& products, double epsilon, Tessera
     std::fill_n(rays.levels.begin(), rays.count, 0.5);
 }
 
-void place_on_rays(double isovalue, double epsilon, RaysOfTiles& rays) noexcept {
-  if (rays.groups != 0) HWY_DYNAMIC_DISPATCH(points_on_rays_of_tiles)(isovalue, epsilon, rays);
-}
-
-void place_in_boxes(std::size_t count, PointsInBoxes& points) noexcept {
-  HWY_DYNAMIC_DISPATCH(points_in_boxes)(count, points);
+void place_on_rays(double epsilon, RaysOfTiles& rays) noexcept {
+  if (rays.groups != 0) HWY_DYNAMIC_DISPATCH(points_on_rays_of_tiles)(epsilon, rays);
 }
 
 void cube_levels(CubeRays& rays, unsigned degree, double epsilon, std::array<double, CubeRays::kMost>& out) noexcept {

@@ -17,28 +17,30 @@ struct TileBox {
 
 /// Rays of tiles in groups of kGroup places. A group has rays of one tile; its last places may be unused.
 struct RaysOfTiles {
-  static constexpr std::size_t kGroup = 8, kMostGroups = 32, kMostTiles = 16;
+  static constexpr std::size_t kGroup = 8, kMostGroups = 32;
   static constexpr std::size_t kMost = kGroup * kMostGroups;  ///< places
+  struct Tile {
+    alignas(64) std::array<double, 16> products;
+    TileBox box;
+  };
 
   std::size_t groups = 0, tiles = 0;
   std::array<std::uint8_t, kMostGroups> tile_of, rays_in;  ///< by group: number of its tile, and of its rays
-  std::array<TileBox, kMostTiles> boxes;
-  /// By corner and tile: samples. Those of tiles from `tiles` on do not matter.
-  alignas(64) std::array<std::array<double, kMostTiles>, 16> samples{};
-  /// By place: the corner that the ray ends at, as a bit, or 0.
-  alignas(64) std::array<std::uint64_t, kMost> corners{};
-  /// By axis: the ends of rays that end at no corner, in the unit tile. `place_on_rays` writes the points of all.
-  /// Finite, also at places without a ray.
+  std::array<Tile, kMostGroups> of_tiles;
+  /// By axis: the ends of rays, in the unit tile. `place_on_rays` replaces them by the points. Finite, also at places
+  /// without a ray.
   alignas(64) std::array<std::array<double, kMost>, 4> ends{};
 
   /// Whether there is room for a tile with `count` rays.
   [[nodiscard]] bool has_room(std::size_t count) const noexcept {
-    return tiles < kMostTiles && groups + (count + kGroup - 1) / kGroup <= kMostGroups;
+    return groups + (count + kGroup - 1) / kGroup <= kMostGroups;
   }
   /// The place of the first ray of the tile that is added next; its others follow.
   [[nodiscard]] std::size_t next_place() const noexcept { return groups * kGroup; }
-  /// Adds a tile with `count` rays, at least one. The tile's samples and box are those of number `tiles`.
-  void add(std::size_t count) noexcept {
+  /// Adds a tile with `count` rays, at least one. `products`: of TileHeights.
+  void add(const std::array<double, 16>& products, const TileBox& box, std::size_t count) noexcept {
+    of_tiles[tiles].products = products;
+    of_tiles[tiles].box = box;
     for (; count > kGroup; count -= kGroup) add_group(kGroup);
     add_group(count);
     ++tiles;
@@ -52,20 +54,8 @@ struct RaysOfTiles {
   }
 };
 
-/// Points in boxes.
-struct PointsInBoxes {
-  static constexpr std::size_t kMost = 16;
-  /// By axis and point: two opposite corners of the box; position between them, from 0 to 1. Finite, also from `count`
-  /// on.
-  alignas(64) std::array<std::array<double, kMost>, 4> from{}, to{}, at{};
-  alignas(64) std::array<std::array<double, 4>, kMost> points;  ///< by point; set by `place_in_boxes`
-};
-
-/// Places `count` points in their boxes, as Placement::Cell does. Also sets other entries of `points`.
-void place_in_boxes(std::size_t count, PointsInBoxes& points) noexcept;
-
-/// Sets the points at the levels of rays (TileHeights<4>::level), in the box of their tile: equal to Placement::Cell of
-/// ray_coordinate. They replace `ends`.
-void place_on_rays(double isovalue, double epsilon, RaysOfTiles& rays) noexcept;
+/// Replaces the ends of rays by the points at their levels (TileHeights<4>::level), in the box of their tile: equal to
+/// Placement::Cell of ray_coordinate.
+void place_on_rays(double epsilon, RaysOfTiles& rays) noexcept;
 
 }  // namespace tegl::detail

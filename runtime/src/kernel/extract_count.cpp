@@ -371,8 +371,7 @@ class TilesOfTable {
 template <int N>
 [[gnu::noinline]] void Counter<N>::resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room,
                                                       TileCount& count, CountScratch& scratch,
-                                                      AssembledTiles* assembled, const FoundCubes* found,
-                                                      bool is_prepared) const {
+                                                      AssembledTiles* assembled, const FoundCubes* found) const {
   if constexpr (N == 4) {
     TilesOfTable of_table(*rows_, count);
     std::uint32_t put_together = 0;
@@ -389,7 +388,7 @@ template <int N>
     const ResolvedCubes& cubes = ResolvedCubes::instance(estimator_->triangulation());
     const bool callers = estimator_->is_callers();  // their answers are compared by key
     RowOfTesseracts tiles(*estimator_, base, shape_.size(0), {room.signatures, room.at, count.active},
-                          (*scratch.rows)[row % CountScratch::kRows].of_word, is_prepared);
+                          *scratch.of_word);
     for (std::uint32_t i = 0; i < count.active; ++i) {
       const unsigned signature = room.signatures[i];
       if (!is_put_together(*estimator_, signature)) {
@@ -431,7 +430,7 @@ CountScratch Counter<N>::make_scratch() const {
   CountScratch scratch{std::vector<Word>(shape_.pitch()), {}, nullptr, nullptr, 0, {}};
   if (lists_cubes_) {
     scratch.tesseract = std::make_unique<ResolvedTesseract>(make_resolved_tesseract(estimator_->triangulation()));
-    scratch.rows = std::make_unique<std::array<CountScratch::Row, CountScratch::kRows>>();
+    scratch.of_word = std::make_unique<TesseractsOfWord>();
   }
   if (rows_ != nullptr && !keeps_tiles()) scratch.tiles.allocate(shape_.size(0));
   if (estimator_ != nullptr && estimator_->is_callers()) {
@@ -536,35 +535,15 @@ void Counter<N>::count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>
     upper.cubes.begin_row(row);
     for (CubePlane& plane : slab.cubes) plane.begin_row(row);
   }
-  const bool is_found = goes_by_steps();
-  if (is_found ? (*scratch.rows)[row % CountScratch::kRows].is_found : !is_uniform(view, row)) {
+  if (!is_uniform(view, row)) {
     const TileRoom room = tile_room(slab, row, scratch);
-    count = is_found ? (*scratch.rows)[row % CountScratch::kRows].count : find_tiles(view, row, room);
+    count = find_tiles(view, row, room);
     const FoundCubes found{upper.cubes, slab.cubes};
-    if (lists_cubes_) resolve_tesseracts(view, row, room, count, scratch, assembled(slab, row), &found, is_found);
+    if (lists_cubes_) resolve_tesseracts(view, row, room, count, scratch, assembled(slab, row), &found);
   }
   keep_count(count, slab, row);
   for (int axis = 0; axis < N - 1; ++axis) upper.edges[axis].count[row] = count.edges[axis];
   slab.edges.count[row] = count.edges[N - 1];
-}
-
-template <int N>
-void Counter<N>::find_rows(const SlabView<N>& view, Slab<N>& slab, std::size_t first, std::size_t end,
-                           std::uint64_t active, CountScratch& scratch) const {
-  if constexpr (N == 4)
-    for (std::size_t row = first; row < end; ++row) {
-      CountScratch::Row& found = (*scratch.rows)[row % CountScratch::kRows];
-      found.is_found = goes_by_tiles(slab, row) && !is_uniform(view, row);
-      if (!found.is_found) continue;
-      slab.first_tile[row] = chunk_of(row) * kChunkRows * shape_.size(0) + active;
-      const TileRoom room = tile_room(slab, row, scratch);
-      found.count = find_tiles(view, row, room);
-      active += found.count.active;
-      auto base = shape_.index_of(row);
-      base[N - 1] = view.k;
-      RowOfTesseracts(*estimator_, base, shape_.size(0), {room.signatures, room.at, found.count.active}, found.of_word)
-          .prepare();
-    }
 }
 
 template <int N>
@@ -656,8 +635,6 @@ void Counter<N>::count_slab(const SlabView<N>& view, Layer<N>& upper, Slab<N>& s
   std::uint64_t in_layer = 0;
   if (!slab.assembled.empty()) slab.assembled[chunk].clear(scratch.assembled_words);
   for (std::size_t row = chunk * kChunkRows; row < shape_.chunk_end(chunk); ++row) {
-    if (!ranks && goes_by_steps() && row % CountScratch::kRows == 0)
-      find_rows(view, slab, row, std::min(row + CountScratch::kRows, shape_.chunk_end(chunk)), sums.active, scratch);
     if (!slab.assembled.empty()) slab.first_assembled[row] = slab.assembled[chunk].size();
     if (keeps_tiles()) slab.first_tile[row] = chunk * kChunkRows * shape_.size(0) + sums.active;
     if (!ranks && goes_by_tiles(slab, row)) {

@@ -35,14 +35,7 @@ struct CountScratch {
   std::vector<Word> words;                       ///< one row
   TileLists tiles;                               ///< one row, if slabs do not keep lists
   std::unique_ptr<ResolvedTesseract> tesseract;  ///< N = 4, if ambiguities are resolved from the data
-  /// Number of rows whose tiles are resolved from the data before they are assembled (Counter::goes_by_steps).
-  static constexpr std::size_t kRows = 8;
-  struct Row {
-    TileCount count;  ///< of tiles in the table
-    bool is_found = false;
-    TesseractsOfWord of_word;
-  };
-  std::unique_ptr<std::array<Row, kRows>> rows;  ///< with `tesseract`
+  std::unique_ptr<TesseractsOfWord> of_word;     ///< with `tesseract`
   std::size_t assembled_words = 0;               ///< of the last chunk's kept tiles, and a few more
   RowAnswers answers;                            ///< if a caller's estimator resolves ambiguities
 };
@@ -118,12 +111,6 @@ class Counter {
   }
   /// Whether any cube owns vertices.
   [[nodiscard]] bool has_cubes() const noexcept { return has_cubes_; }
-  /// Whether the steps of the passes (to find tiles, to assemble them; to write vertices on edges, of cubes, and tiles)
-  /// are each done for several rows: for 4D tiles that are resolved from the data, as the code of all steps is larger
-  /// than the nearest cache.
-  [[nodiscard]] bool goes_by_steps() const noexcept {
-    return lists_cubes_ && keeps_tiles() && !estimator_->is_callers();
-  }
   /// Whether cubes are resolved from the data (N = 4). Cubes that own vertices are then listed instead of marked by
   /// bits.
   [[nodiscard]] bool lists_cubes() const noexcept { return lists_cubes_; }
@@ -152,10 +139,6 @@ class Counter {
   /// Counts a row of the slab and of the upper layer together. Requires goes_by_tiles(row).
   void count_quickly(const SlabView<N>& view, Layer<N>& upper, Slab<N>& slab, std::size_t row,
                      CountScratch& scratch) const;
-  /// Finds and resolves the tiles of rows first ... end - 1, at most CountScratch::kRows, for count_quickly. `active`:
-  /// number of active tiles of the chunk before them.
-  void find_rows(const SlabView<N>& view, Slab<N>& slab, std::size_t first, std::size_t end, std::uint64_t active,
-                 CountScratch& scratch) const;
   /// Whether all samples touched by a chunk's tiles and edges have the same state.
   [[nodiscard]] bool is_uniform_chunk(const SlabView<N>& view, std::size_t chunk) const;
   void clear_chunk(Layer<N>& upper, Slab<N>& slab, std::size_t chunk) const;
@@ -179,8 +162,7 @@ class Counter {
     std::array<CubePlane, N - 1>& in_slab;
   };
   void resolve_tesseracts(const SlabView<N>& view, std::size_t row, const TileRoom& room, TileCount& count,
-                          CountScratch& scratch, AssembledTiles* assembled, const FoundCubes* found,
-                          bool is_prepared = false) const;
+                          CountScratch& scratch, AssembledTiles* assembled, const FoundCubes* found) const;
   [[nodiscard]] static AssembledTiles* assembled(Slab<N>& slab, std::size_t row) noexcept {
     return slab.assembled.empty() ? nullptr : &slab.assembled[chunk_of(row)];
   }

@@ -169,7 +169,7 @@ class TileWriter {
                                           const RowTiles& tiles, TilesWithOwnVertices& own) const noexcept {
     CubesOfTiles cubes(own.view, own.row);
     own.cubes = &cubes;
-    RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles, own.scratch.rows->front().of_word);
+    RowOfTesseracts tesseracts(*estimator_, start, own.view.shape->size(0), tiles, *own.scratch.of_word);
     if (!estimator_->is_callers()) own.tesseracts = &tesseracts;
     const Slab<N>& slab = *own.view.slab;
     if (!slab.assembled.empty()) {

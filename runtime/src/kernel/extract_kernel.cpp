@@ -72,7 +72,6 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
         source_(source),
         output_(output),
         reporter_(options.work.progress, grid.axes[N - 1].size() - 1),
-        epsilon_(options.epsilon),
         inverted_(options.ambiguity == Ambiguity::high),
         uncertainty_(plan.uncertainty),
         max_vertices_(plan.max_vertices),
@@ -186,7 +185,7 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   }
   [[nodiscard]] std::unique_ptr<OwnCells> make_own_cells() const {
     if constexpr (N > 2)
-      if (estimator_ != nullptr) return std::make_unique<OwnCells>(source_, epsilon_, placement_);
+      if (estimator_ != nullptr) return std::make_unique<OwnCells>(source_, placement_);
     return nullptr;
   }
 
@@ -419,54 +418,23 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
                      typename Contour<N, Real>::Simplex* simplices) {
     const SlabView<N> around = view(k);
     const Slab<N>& here = slab(k);
-    const std::uint32_t busy = here.chunks[chunk].busy;
+    std::uint32_t busy = here.chunks[chunk].busy;
     if (busy == 0) return;
     EdgeWriter<N, Real>& edges = scratch.edges;
     OwnCells* const own_cells = scratch.own_cells.get();
     start_vertices(scratch, {run_in_layer(k + 1, chunk, vertices), run_in_slab(k, chunk, vertices), vertices});
-    const auto for_rows = [&](const auto& work) {
-      for (std::uint32_t rest = busy; rest != 0; rest &= rest - 1) {
-        const std::size_t row = chunk * kChunkRows + static_cast<std::size_t>(std::countr_zero(rest));
-        work(row, counter_.tiles(around, row, scratch.counting));
-      }
-    };
-    const auto write_edges = [&](std::size_t row, const RowTiles& tiles) {
+    for (; busy != 0; busy &= busy - 1) {
+      const std::size_t row = chunk * kChunkRows + static_cast<std::size_t>(std::countr_zero(busy));
+      const RowTiles tiles = counter_.tiles(around, row, scratch.counting);
       if (counter_.goes_by_tiles(here, row))
         edges.add_by_tiles(around, row, tiles);
       else
         edges.add_by_bits(&layer(k + 1), &here, row);
-    };
-    const auto write_cubes = [&](std::size_t row, const RowTiles& tiles) {
-      start_row_of_cells(k, row, tiles.count, own_cells);
       generate_layer_cubes(k + 1, row, vertices, own_cells);
       generate_slab_cubes(around, k, row, vertices, own_cells);
-    };
-    const auto write_tiles = [&](std::size_t row, const RowTiles& tiles) {
-      start_row_of_cells(k, row, tiles.count, own_cells);
       tiles_.write(around, row, k, tiles, vertices, simplices, part_.first_simplex, scratch.counting, own_cells);
-    };
-    if (counter_.goes_by_steps()) {
-      for_rows(write_edges);
-      for_rows(write_cubes);
-      for_rows(write_tiles);
-    } else {
-      for_rows([&](std::size_t row, const RowTiles& tiles) {
-        write_edges(row, tiles);
-        write_cubes(row, tiles);
-        write_tiles(row, tiles);
-      });
     }
     finish_vertices(scratch);
-  }
-
-  void start_row_of_cells([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
-                          [[maybe_unused]] std::size_t tiles, [[maybe_unused]] OwnCells* cells) const noexcept {
-    if constexpr (N == 4) {
-      if (cells == nullptr) return;
-      auto base = shape_.index_of(row);
-      base[N - 1] = k;
-      cells->start_row(base, shape_.size(0), tiles);
-    }
   }
 
   void generate_layer_cubes([[maybe_unused]] std::size_t k, [[maybe_unused]] std::size_t row,
@@ -544,7 +512,6 @@ class TableExtraction final : public SteppedExtraction<N, Real> {
   SampleSource<N>& source_;
   ContourOutput<N, Real>& output_;
   ProgressReporter reporter_;
-  double epsilon_;
   bool inverted_;
   VertexUncertainty* uncertainty_;  ///< null: not requested
   std::uint64_t max_vertices_;

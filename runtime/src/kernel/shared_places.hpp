@@ -210,7 +210,7 @@ class ResolvedPlaces {
   /// Whether own vertices with these masks, all combined, depend on vertices on edges. Not if all are copies of
   /// corners.
   static bool needs_edges(std::uint64_t masks) noexcept { return masks >> 16 != 0; }
-  /// Calls write(j, position) for all own vertices of a filling (ResolvedView::masks).
+  /// Calls write(j, position) for all own vertices of a filling (ResolvedView::masks) except those that are means.
   template <class Write>
   void own_vertices(const ResolvedView& filling, const Write& write) noexcept {
     TesseractRays rays;
@@ -218,6 +218,7 @@ class ResolvedPlaces {
     std::size_t ray = 0;
     for (unsigned j = 0; j < filling.own_vertices; ++j) {
       const std::uint64_t mask = filling.masks[j];
+      if (is_mean(mask)) continue;
       TilePoint<4> place;
       if (is_on_ray(mask)) {
         for (unsigned a = 0; a < 4; ++a) place[a] = ray_coordinate(rays.ends[a][ray], rays.levels[ray]);

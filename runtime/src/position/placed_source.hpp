@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include "base/function_ref.hpp"
-#include "image/placed_crossings.hpp"
 #include "image/sample_source.hpp"
 #include "tegl/grid.hpp"
 #include "tegl/tile/corners.hpp"
@@ -109,7 +108,7 @@ class PositionsOnEdges {
 };
 
 template <int N>
-class PlacedSource : public SampleSource<N>, public PlacedCrossings {
+class PlacedSource : public SampleSource<N> {
  public:
   using Index = SampleIndex<N>;
 

@@ -213,12 +213,6 @@ TEST(TileHeights, OfManyRaysAreThoseOfEach) {
   }
 }
 
-/// The point at `x`, from 0 to 1, between two coordinates, as Placement::Cell computes it.
-double between(double from, double to, double x) {
-  const double point = std::clamp(from + x * (to - from), std::min(from, to), std::max(from, to));
-  return x >= 1.0 ? to : point;
-}
-
 void expect_points_on_rays_of_each_tile() {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -231,68 +225,39 @@ void expect_points_on_rays_of_each_tile() {
       std::size_t first;
     };
     std::vector<Tile> tiles;
-    const double epsilon = i % 3 == 0 ? 0.125 : 0.0, isovalue = i % 2 == 0 ? 0.0 : uniform(random);
+    const double epsilon = i % 3 == 0 ? 0.125 : 0.0;
     // as many tiles as fit
     for (;;) {
-      std::array<double, 16> samples, heights;
-      for (double& sample : samples) sample = uniform(random);
-      if (random() % 16 == 0) samples[random() % 16] = std::numeric_limits<double>::infinity();
-      for (std::size_t v = 0; v < 16; ++v) heights[v] = samples[v] - isovalue;
+      std::array<double, 16> heights;
+      for (double& height : heights) height = uniform(random);
+      if (random() % 16 == 0) heights[random() % 16] = std::numeric_limits<double>::infinity();
       TileBox box;
       for (std::size_t a = 0; a < 4; ++a) box.from[a] = 10 * uniform(random), box.to[a] = box.from[a] + uniform(random);
       std::vector<std::array<double, 4>> ends(1 + random() % (i % 16 == 0 ? TesseractRays::kMost : 20));
       if (!rays.has_room(ends.size())) break;
-      tiles.push_back({TileHeights<4>(heights, epsilon), box, ends, rays.next_place()});
-      for (std::size_t v = 0; v < 16; ++v) rays.samples[v][rays.tiles] = samples[v];
-      rays.boxes[rays.tiles] = box;
-      rays.add(ends.size());
-      for (std::size_t r = 0; r < ends.size(); ++r) {
-        const std::size_t place = tiles.back().first + r;
-        const unsigned corner = random() % 16;
-        const bool is_corner = random() % 2 == 0;
-        rays.corners[place] = is_corner ? std::uint64_t{1} << corner : 0;
+      tiles.push_back({TileHeights<4>(heights, epsilon), box, ends, 0});
+      tiles.back().first = rays.next_place();
+      rays.add(tiles.back().heights.products(), box, ends.size());
+      for (std::size_t r = 0; r < ends.size(); ++r)
         for (std::size_t a = 0; a < 4; ++a) {
           const double end = random() % 2 == 0 ? static_cast<double>(random() % 2) : 0.5 + 0.5 * uniform(random);
-          rays.ends[a][place] = end;
-          tiles.back().ends[r][a] = is_corner ? static_cast<double>(corner >> a & 1u) : end;
+          rays.ends[a][tiles.back().first + r] = tiles.back().ends[r][a] = end;
         }
-      }
     }
-    ASSERT_GE(tiles.size(), 1u);
-    place_on_rays(isovalue, epsilon, rays);
+    place_on_rays(epsilon, rays);
     for (const Tile& tile : tiles)
       for (std::size_t r = 0; r < tile.ends.size(); ++r) {
         const double level = tile.heights.level(tile.ends[r]);
         for (std::size_t a = 0; a < 4; ++a) {
+          const double from = tile.box.from[a], to = tile.box.to[a];
           const double x = 0.5 + level * (tile.ends[r][a] - 0.5);
-          ASSERT_EQ(between(tile.box.from[a], tile.box.to[a], x), rays.ends[a][tile.first + r])
-              << "case " << i << ", ray " << r;
+          const double point = std::clamp(from + x * (to - from), std::min(from, to), std::max(from, to));
+          ASSERT_EQ(x >= 1.0 ? to : point, rays.ends[a][tile.first + r]) << "case " << i << ", ray " << r;
         }
       }
     rays.clear();
   }
 }
-
-void expect_points_in_boxes() {
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  for (int i = 0; i < 500; ++i) {
-    PointsInBoxes points;
-    const std::size_t count = 1 + random() % PointsInBoxes::kMost;
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t j = 0; j < count; ++j) {
-        points.from[a][j] = 20 * uniform(random) - 10;
-        points.to[a][j] = random() % 4 == 0 ? points.from[a][j] : 20 * uniform(random) - 10;
-        points.at[a][j] = random() % 4 == 0 ? static_cast<double>(random() % 2) : uniform(random);
-      }
-    place_in_boxes(count, points);
-    for (std::size_t a = 0; a < 4; ++a)
-      for (std::size_t j = 0; j < count; ++j)
-        ASSERT_EQ(between(points.from[a][j], points.to[a][j], points.at[a][j]), points.points[j][a]) << "point " << j;
-  }
-}
-
-TEST(PointsInBoxes, AreBetweenTheirCorners) { test::with_all_targets(expect_points_in_boxes); }
 
 TEST(TileHeights, PointsOnRaysOfSeveralTilesAreThoseOfEach) {
   test::with_all_targets(expect_points_on_rays_of_each_tile);
