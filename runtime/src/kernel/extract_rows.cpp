@@ -13,8 +13,8 @@
 #define HWY_TARGET_INCLUDE "kernel/extract_rows.cpp"
 #include "base/dispatch.hpp"
 // This include must precede Highway's own headers.
+#include "hwy/cache_control.h"
 #include "hwy/highway.h"
-#include "tile/request_ahead.hpp"
 
 namespace tegl::detail {
 /// Whether the processor has GFNI. Highway's AVX3_DL does not include these instructions, but every processor with it
@@ -419,6 +419,10 @@ HWY_INLINE unsigned entry_place(const RowTable& table, unsigned key) {
   return key;
 }
 
+/// Tiles between the one that is written and the one whose entry is fetched: those of 4D tiles are seldom in a cache.
+/// Lists of signatures have entries past the end (TileRoom).
+constexpr std::size_t kAhead = 4;
+
 #if HWY_TARGET <= HWY_AVX3
 
 /// First vertex numbers of a tile's edge streams, in one or two registers.
@@ -463,7 +467,7 @@ HWY_INLINE void write_lanes(const TileOutput<N>& row, const RowTable& table, con
   const std::size_t roomy = row.active - std::min<std::size_t>(row.active, kAtOnce);
   for (std::size_t i = 0; i < row.active; ++i) {
     const unsigned signature = row.signatures[i];
-    if constexpr (N == 4) request_ahead(table, row.signatures, i, row.active);
+    if constexpr (N == 4) hwy::Prefetch(entries + row.signatures[i + kAhead]);
     const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
     const std::uint32_t moved = edges << 1 & kNext;
     const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
@@ -536,7 +540,7 @@ HWY_INLINE void write_generic(const TileOutput<N>& row, const RowTable& table, c
   auto* out = row.out;
   for (std::size_t i = 0; i < row.active; ++i) {
     const unsigned signature = row.signatures[i];
-    if constexpr (N == 4) request_ahead(table, row.signatures, i, row.active);
+    if constexpr (N == 4) hwy::Prefetch(entries + row.signatures[i + kAhead]);
     const std::uint32_t edges = edges_of<N>(Variants ? signature_of<N>(signature) : signature);
     const std::uint32_t moved = edges << 1 & kNext;
     const std::uint32_t entry = entries[entry_place<N, Variants>(table, signature)];
