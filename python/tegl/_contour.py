@@ -421,10 +421,10 @@ class Contour(ArrayOrdered):
             given = _arguments.as_list("times", times, "a list of times, or a whole number of even ones")
             wanted = [_arguments.number_on_axis(time, unit) for time in given]
             places = wanted if allow_empty else self._places_within(self.time_axis, wanted)
+            if any(after <= before for before, after in zip(places, places[1:])):
+                places = wanted  # moved, they would not ascend
             if not allow_empty:
                 self._require_places(self.time_axis, places, given)
-            if any(after <= before for before, after in zip(places, places[1:])):
-                places = wanted  # a turn away, not all by the same number of turns
         found = _tegl.track(self._core, _arguments.as_number("min_lifetime", min_lifetime), places,
                             None if first is None else _arguments.number_on_axis(first, unit),
                             None if last is None else _arguments.number_on_axis(last, unit),
