@@ -298,8 +298,8 @@ std::vector<CurvedAxis> join_curved(std::vector<Member>& members, const RawGrid&
   return joined;
 }
 
-/// Throws UnsupportedData for plane grids in x, y or z whose constant coordinate, which is no axis, differs from file to
-/// file, unless it is the new axis.
+/// Throws UnsupportedData for plane grids in x, y or z whose constant coordinate, which is no axis, differs between
+/// files, unless it is the new axis.
 void require_same_plane(const std::vector<Member>& members, const Axis& added) {
   const std::vector<SingleAxis>& singles = members.front().grid.single;
   for (std::size_t s = 0; s < singles.size(); ++s) {
