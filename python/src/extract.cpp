@@ -331,6 +331,18 @@ void continue_longitudes_any(py::array_t<double, py::array::c_style>& values, co
   continue_longitudes({values.mutable_data(), static_cast<std::size_t>(values.size())}, sizes);
 }
 
+/// The axis along which curved longitudes run: those of the first coordinate of `given`.
+int axis_of_longitudes_any(const AnyImage& image, const CurvedAxes& given) {
+  const std::vector<CurvedAxis> curved = curved_axes(given);
+  return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> int {
+    if constexpr (N <= 4) {
+      return axis_of_longitudes<N>(view.grid(), curved.at(0));
+    } else {
+      throw_dimension("curved grids", N, "2 to 4 dimensions");
+    }
+  });
+}
+
 std::vector<int> longitude_axes_any(const AnyImage& image, const CurvedAxes& given) {
   const std::vector<CurvedAxis> curved = curved_axes(given);
   return visit_image(image, [&]<class T, int N>(const Image<T, N>& view) -> std::vector<int> {
@@ -500,6 +512,7 @@ void bind_extract(py::module_& m) {
         py::arg("level"), py::arg("double"), py::arg("options"), py::arg("progress"), doc::extract_curved);
   m.def("by_points", &by_points_any, py::arg("arrays"), py::arg("threads"), doc::by_points);
   m.def("longitude_axes", &longitude_axes_any, py::arg("image"), py::arg("curved"), doc::longitude_axes);
+  m.def("axis_of_longitudes", &axis_of_longitudes_any, py::arg("image"), py::arg("curved"), doc::axis_of_longitudes);
   m.def("continue_longitudes", &continue_longitudes_any, py::arg("values").noconvert(), py::arg("sizes"),
         doc::continue_longitudes);
   m.def("is_longitude_unit", &is_longitude_unit, py::arg("unit"), doc::is_longitude_unit);

@@ -410,6 +410,7 @@ class Contour(ArrayOrdered):
         """Tracks the parts of the contour: see `tegl.track`."""
         allow_empty = _arguments.as_bool("allow_empty", allow_empty)
         unit = self.axis_units[self.time_axis]
+        wanted: list[float] = []
         if times is None:
             places: list[float] = []
         elif isinstance(times, (int, np.integer)):
@@ -418,7 +419,10 @@ class Contour(ArrayOrdered):
             places = _tegl.even_times(float(along.min()), float(along.max()), count) if len(along) else []
         else:
             given = _arguments.as_list("times", times, "a list of times, or a whole number of even ones")
-            places = self._places_within(self.time_axis, [_arguments.number_on_axis(time, unit) for time in given])
+            wanted = [_arguments.number_on_axis(time, unit) for time in given]
+            places = wanted if allow_empty else self._places_within(self.time_axis, wanted)
+            if any(after <= before for before, after in zip(places, places[1:])):
+                places = wanted  # moved, they would not ascend
             if not allow_empty:
                 self._require_places(self.time_axis, places, given)
         found = _tegl.track(self._core, _arguments.as_number("min_lifetime", min_lifetime), places,
@@ -427,7 +431,7 @@ class Contour(ArrayOrdered):
                             _arguments.as_bool("handles", handles),
                             _arguments.as_bool("label_simplices", label_simplices),
                             _incidence.core_or_none(incidence), _arguments.threads_of(threads), progress)
-        return TrackGraph(found, self._is_reversed, unit)
+        return TrackGraph(found, self._is_reversed, unit, dict(zip(places, wanted)))
 
     @_arguments.documents("sample")
     def sample(self, array, name: str, unit: str = "", *, threads: int = 0, progress: Progress | None = None,

@@ -88,9 +88,10 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
         dict, the period is the number of samples x the step, or 360 for axes with a unit of degrees_east. It must be more
         than twice each step, the one across the seam included. The contour is *wrapped*: it continues across the seam, and
         `Contour.unroll` makes one for pictures. Longitudes at the end that repeat the first ones 360 degrees further, as in
-        global ocean grids, are left out if their values are equal; otherwise they are an error. On a curved grid, the last samples along the axis are connected to the first
-        ones: at their own places (O-grids), 360 further along longitudes, or by a given period along the axis's own
-        coordinate, in the direction in which that grows. See docs/other-tilings.md.
+        global ocean grids, are left out if their values are equal, up to rounding; otherwise they are an error. On a curved
+        grid, the last samples along the axis are connected to the first ones: at their own places (O-grids), 360 further
+        along longitudes, or by a given period along the axis's own coordinate, in the direction in which that grows. See
+        docs/other-tilings.md.
 
     lattice
         Samples on a staggered lattice: the odd layers of the last library axis (of C-ordered arrays, the first axis) are

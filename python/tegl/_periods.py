@@ -17,7 +17,8 @@ def given_or_none(periodic: object) -> object:
 
 def axes_of(periodic: object, prepared: _arguments.Prepared,
             curved: Sequence[_curved.Coordinate] = ()) -> tuple[list[int], list[float]]:
-    """The library's axes and their periods (NaN: by the samples) of the argument `periodic`; `curved`: of `_curved.coordinates_of`."""
+    """The library's axes and their periods (NaN: by the samples) of the argument `periodic`; `curved`: of
+    `_curved.coordinates_of`."""
     if isinstance(periodic, str) and periodic == "auto":
         found = _tegl.longitude_axes(prepared.image, curved)
         return found, [float("nan")] * len(found)
@@ -43,19 +44,24 @@ def axes_of(periodic: object, prepared: _arguments.Prepared,
 
 def _axis(axis: int | str, prepared: _arguments.Prepared,
           curved: Sequence[_curved.Coordinate]) -> int:
-    """The library's axis of a name or number. "lon" and "longitude" also are the axis along which longitudes, by their unit,
-    run around the globe, or else the only axis of longitudes; so is the name of longitudes in an array of several dimensions."""
+    """The library's axis of a name or number. Names of curved longitudes, by their unit, stand for the axis along which
+    these run or grow most, and so do "lon" and "longitude" if only one axis has longitudes, or runs around the globe."""
     if not isinstance(axis, str):
         return prepared.library_axis(axis)
+    longitudes = [(one[0], _tegl.axis_of_longitudes(prepared.image, [one])) for one in curved
+                  if _tegl.is_longitude_unit(one[4])]
     if axis not in prepared.names:
-        is_longitude = axis in ("lon", "longitude")
-        found = _tegl.longitude_axes(prepared.image, curved) if is_longitude else []
-        if is_longitude and len(found) != 1:
-            found = [prepared.library_axis(number) for number, unit in enumerate(prepared.units) if _tegl.is_longitude_unit(unit)]
+        found: list[int] = []
+        if axis in ("lon", "longitude"):
+            of_units = [prepared.library_axis(number) for number, unit in enumerate(prepared.units)
+                        if _tegl.is_longitude_unit(unit)]
+            along = dict(longitudes)
+            found = [along.get(number, number) for number in of_units]
+            if len(found) != 1:
+                found = _tegl.longitude_axes(prepared.image, curved)
         return found[0] if len(found) == 1 else prepared.library_axis(axis)
     number = prepared.library_axis(axis)
-    for one in curved:
-        found = [a for a in _tegl.longitude_axes(prepared.image, [one]) if one[1] >> a & 1]
-        if len(found) == 1 and number in (one[0], found[0]):  # the other coordinate has the other axis
-            return found[0] if number == one[0] else one[0]
+    for own, axis_along in longitudes:
+        if number in (own, axis_along):  # the other coordinate has the other axis
+            return axis_along if number == own else own
     return number

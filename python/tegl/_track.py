@@ -80,7 +80,9 @@ class Track:
 class TrackGraph:
     """The Reeb graph of the time on a contour: events, and the segments of parts between them."""
 
-    def __init__(self, core: _tegl.TrackGraph, is_reversed: bool, unit: str) -> None:
+    def __init__(self, core: _tegl.TrackGraph, is_reversed: bool, unit: str,
+                 given: typing.Mapping[float, float] | None = None) -> None:
+        """`given`: times of samples as the caller gave them, by those in the data."""
         self._core = core
         self._unit = unit
 
@@ -92,7 +94,10 @@ class TrackGraph:
         self.tracks: list[Track] = [Track(**one) for one in core.tracks()]
 
         def segment(one: dict[str, typing.Any]) -> TrackSegment:
-            one["samples"] = [TrackSample(**turned(sample, "centroid", "lower", "upper")) for sample in one["samples"]]
+            times = given or {}
+            one["samples"] = [TrackSample(**{**turned(sample, "centroid", "lower", "upper"),
+                                             "time": times.get(sample["time"], sample["time"])})
+                              for sample in one["samples"]]
             return TrackSegment(**one)
 
         self.segments: list[TrackSegment] = [segment(one) for one in core.segments()]

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -106,6 +107,30 @@ TEST_F(Longitudes, CurvedGridsMayRepeatTheFirstSamples) {
         EXPECT_EQ(file_bytes(path("spot.vtkhdf")), expected) << axis << " " << is_turned;
       }
     }
+  }
+}
+
+TEST_F(Longitudes, OfARegionAreErrorsInBothOrdersOfDimensions) {
+  const std::string file = path("region.nc");
+  for (const bool is_turned : {false, true}) {
+    write_curved_globe(file, "TLONG", is_turned, 0, 12);
+    for (const char* const axis : {"TLONG", "lon", "i"}) {
+      SCOPED_TRACE(std::string(axis) + (is_turned ? " turned" : ""));
+      expect_refused(file, {"--periodic", axis}, "(i), a curved axis, span 110, in the mean of all rows");
+    }
+  }
+}
+
+TEST_F(Longitudes, AttributesOnLatticesLeaveOutTheSameSamples) {
+  const std::string file = write_globe(1), other = path("other.nc");
+  std::filesystem::copy_file(file, other);
+  for (const std::size_t repeated : {1, 2}) {
+    const std::string image = write_globe(repeated);  // the attribute has one repeated column
+    const RunResult run = contour(image, {"--periodic", "lon", "--lattice", "triangular", "--attribute", other});
+    ASSERT_EQ(run.exit, 0) << run.err;
+    const Mesh mesh = read_mesh(path("spot.vtkhdf"));
+    ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+    for (const double value : mesh.vertex_attributes[0].values) EXPECT_NEAR(value, 0.0, 1e-4);
   }
 }
 

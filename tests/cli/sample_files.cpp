@@ -174,9 +174,10 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
   require(nc_close(file));
 }
 
-void write_curved_globe(const std::string& path, const char* longitudes, bool is_turned, std::size_t repeated) {
+void write_curved_globe(const std::string& path, const char* longitudes, bool is_turned, std::size_t repeated,
+                        std::size_t columns) {
   constexpr std::size_t kAround = 36, kLat = 17;
-  const std::size_t columns = kAround + repeated;
+  columns += repeated;
   std::vector<double> lon, lat, values;
   for (std::size_t s = 0; s < columns * kLat; ++s) {
     const std::size_t column = is_turned ? s / kLat : s % columns;

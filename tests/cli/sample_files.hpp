@@ -62,8 +62,9 @@ void write_netcdf(const std::string& path, const std::vector<std::string>& names
                   const std::vector<NetcdfAttribute>& of_axes = {});
 
 /// A netCDF file of a global grid with two-dimensional longitudes and latitudes. `is_turned`: its first dimension runs
-/// around the globe. `repeated`: so many of its columns follow 360 degrees further.
+/// around the globe. `repeated`: so many of its columns follow 360 degrees further. `columns`: of the globe, others are
+/// a region.
 void write_curved_globe(const std::string& path, const char* longitudes = "lon", bool is_turned = false,
-                        std::size_t repeated = 0);
+                        std::size_t repeated = 0, std::size_t columns = 36);
 
 }  // namespace tegl::test

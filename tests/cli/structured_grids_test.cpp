@@ -22,15 +22,17 @@ using testing::HasSubstr;
 constexpr int kAround = 24, kOut = 6;
 
 /// Rings of 24 x 6 points between the radii 1 and 2, in layers along z, with the radius as the value at points.
-/// `of_cells`: arrays of the cells. `moved`: how far along x.
-std::string rings_vts(int layers, const std::string& of_cells = "", double moved = 0.0) {
+/// `of_cells`: arrays of the cells. `moved`: how far along x. `height`: of the first
+/// layer.
+std::string rings_vts(int layers, const std::string& of_cells = "", double moved = 0.0, double height = 0.0) {
   std::ostringstream points, values, text;
   points.precision(17);
   for (int k = 0; k < layers; ++k)
     for (int j = 0; j < kOut; ++j)
       for (int i = 0; i < kAround; ++i) {
         const double angle = 2 * std::numbers::pi * i / kAround, radius = 1 + 0.2 * j;
-        points << moved + radius * std::cos(angle) << ' ' << radius * std::sin(angle) << ' ' << 0.5 * k << '\n';
+        points << moved + radius * std::cos(angle) << ' ' << radius * std::sin(angle) << ' ' << height + 0.5 * k
+               << '\n';
         values << radius << '\n';
       }
   text << R"(<VTKFile type="StructuredGrid" version="0.1"><StructuredGrid WholeExtent="0 23 0 5 0 )" << layers - 1
@@ -84,6 +86,19 @@ TEST_F(StructuredGrids, AreMeshesOrCurvedGridsWithTheSameContours) {
     }
     EXPECT_EQ(run_json({"components", file})["components"][0]["euler"], 1);
   }
+}
+
+TEST_F(StructuredGrids, OfPlanesThatMoveOutOfThemselvesAreErrors) {
+  write("at0.vts", rings_vts(1));
+  write("at5.vts", rings_vts(1, "", 0.0, 5.0));
+  const auto collection = [&](const char* first, const char* second) {
+    return write("rings.pvd", std::string(R"(<VTKFile type="Collection"><Collection><DataSet timestep="0" file=")") +
+                                  first + R"("/><DataSet timestep="1" file=")" + second +
+                                  R"("/></Collection></VTKFile>)");
+  };
+  expect_refused(collection("at0.vts", "at5.vts"), {"--curved-grid", "--periodic", "x"},
+                 "has the constant coordinate z = 5; expected 0, as ");
+  (void)run_json({"contour", collection("at5.vts", "at5.vts"), "--curved-grid", "-o", path("out.vtkhdf")});
 }
 
 TEST_F(StructuredGrids, ThatMoveAreCurvedGridsOverTime) {

@@ -476,22 +476,17 @@ std::vector<AxisNames> names_of_axes(const Grid<N>& grid) {
   return axes;
 }
 
-/// The axes that the names of curved coordinates stand for: of longitudes the one along which they run around the
-/// globe. In a file with the other order of dimensions that is the axis of another coordinate, which gets theirs.
+/// The axes that the names of curved coordinates stand for: of longitudes `axis_of_longitudes`. In a file with the
+/// other order of dimensions that is the axis of another coordinate, which gets theirs.
 template <int N>
 std::vector<int> axes_of_names(const Grid<N>& grid, const std::vector<CurvedAxis>& curved) {
   std::vector<int> axes;
   for (const CurvedAxis& one : curved) axes.push_back(one.axis);
   for (std::size_t c = 0; c < curved.size(); ++c) {
     if (!is_longitude_unit(curved[c].unit)) continue;
-    const std::span<const CurvedAxis> one(&curved[c], 1);
-    std::vector<int> around = longitude_axes<N>(grid, one);
-    for (int a = 0; a < N; ++a)
-      if (repeated_longitudes<N>(grid, one, a) > 0) around.push_back(a);
-    std::erase_if(around, [&](int a) { return (curved[c].along >> a & 1u) == 0; });
-    if (around.size() != 1) continue;
-    std::replace(axes.begin(), axes.end(), around.front(), axes[c]);
-    axes[c] = around.front();
+    const int axis = axis_of_longitudes<N>(grid, curved[c]);
+    std::replace(axes.begin(), axes.end(), axis, axes[c]);
+    axes[c] = axis;
   }
   return axes;
 }

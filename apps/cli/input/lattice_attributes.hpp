@@ -3,13 +3,16 @@
 // The option --attribute for images on lattices, and where it is refused.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "input/attributes.hpp"
 #include "input/extraction.hpp"
+#include "tegl/curved.hpp"
 #include "tegl/lattice.hpp"
 
 namespace tegl::cli {
@@ -31,6 +34,28 @@ void require_same_lattice(const Grid<N>& image, const ImageInfo& info, const std
               fmt::format("--attribute {}: an image on the lattice {}; the contour's is {}: expected the same lattice, "
                           "numbers of samples and coordinates as the image that is contoured",
                           file, info.lattice ? name_of(*info.lattice) : "cubic", name_of(lattice)));
+}
+
+/// The values of an image of --attribute on a lattice, without samples that repeat the first ones of periodic axes, as
+/// they are left out of the image that is contoured. Throws as require_same_lattice and without_repeated.
+template <Value T, int N>
+std::vector<double> numbers_on_lattice(const OwnedImage<T, N>& image, const ImageInfo& info, const std::string& file,
+                                       const Grid<N>& contour, const Tiling& tiling) {
+  const NamedPeriods named = named_periods(contour, {}, tiling.periodic);
+  const Grid<N> kept = without_repeated<T, N>(image.view(), {}, named.axes, named.periods).image.grid();
+  require_same_lattice<N>(kept, info, file, contour, *tiling.lattice);
+  std::vector<double> numbers;
+  numbers.reserve(image.values.size());
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    bool is_kept = true;
+    std::size_t rest = i;
+    for (std::size_t a = 0; a < N; ++a) {
+      is_kept = is_kept && rest % image.grid.axes[a].size() < kept.axes[a].size();
+      rest /= image.grid.axes[a].size();
+    }
+    if (is_kept) numbers.push_back(static_cast<double>(image.values[i]));
+  }
+  return numbers;
 }
 
 /// Throws InvalidArgument for --attribute with a curved grid and --periodic.
@@ -62,8 +87,7 @@ void sample_on_lattice(const AttributeOptions& attributes, Contour<N, Real>& con
     how.on_lattice = [&](const ReadImageResult& other, const std::string& file) {
       std::vector<double> numbers;
       const auto take = [&](const auto& from) {
-        require_same_lattice<N>(from.grid, other.info, file, owned.grid, *tiling.lattice);
-        numbers.assign(from.values.begin(), from.values.end());
+        numbers = numbers_on_lattice(from, other.info, file, owned.grid, tiling);
       };
       std::visit(take, std::get<AnyImageN<N>>(other.image));
       return interpolate_lattice(owned.view(), *tiling.lattice, isovalue, numbers, "", "", options,

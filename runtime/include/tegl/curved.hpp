@@ -69,9 +69,10 @@ requires DimensionBetween<N, 2, 5>
 /// the length of the seam along the axis's own coordinate, in the direction in which that grows, or NaN for the vector
 /// above. Errors: InvalidGrid (as `extract_curved`, and an axis that the grid does not have); InvalidArgument (as
 /// `default_periods`; another number of periods; one not positive and finite, or not more than twice the mean step
-/// across the seam, as in another unit; without a given period, longitudes that grow by 360 degrees or more, and those
-/// of a region: the axis along which they grow most has a seam to the places of the first samples that is more than
-/// twice as long as its longest step, in the mean of all rows).
+/// across the seam, as in another unit; coordinates that grow by the period or more, in the mean of all rows or in most
+/// of them; without a given period, longitudes of a region: the way back to the places of the first samples is more
+/// than twice as long as the longest step along the axis, in the mean of all rows, and longitudes do not grow by 180
+/// degrees or more along another axis).
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,
@@ -79,9 +80,10 @@ requires DimensionBetween<N, 2, 4>
 
 /// The number of samples at the end of an axis that repeat the first ones a full turn further, as in global ocean
 /// grids: longitudes (by the unit, of the axis or of curved coordinates) 360 degrees from those of the first samples,
-/// to a thousandth of a step, and other curved coordinates equal to theirs; unknown where theirs are. 0 if there are
-/// none, or fewer than three others. Values are not compared. Errors: InvalidGrid (as `extract_curved`; in 5D any
-/// curved axis; an axis that the grid does not have). O(coordinates / samples along the axis) time.
+/// to a thousandth of a step, and other curved coordinates equal to theirs, to 2^-22 of the largest; unknown where
+/// theirs are. Rows of curved longitudes may also return to their first ones, as where a tripolar grid is folded,
+/// except one at least. 0 if there are none, or fewer than three others. Values are not compared. Errors: InvalidGrid
+/// (as `extract_curved`; in 5D any curved axis; an axis that the grid does not have). O(coordinates) time.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::size_t repeated_longitudes(const Grid<N>& grid, std::span<const CurvedAxis> curved, int axis);
@@ -99,7 +101,8 @@ struct WithoutRepeated {
 /// `periods`, if any, has a number for each of the axes: a given period in the axis's unit, or NaN; with another one
 /// than 360 degrees, samples remain. Values are not copied, coordinates are. Errors: as `repeated_longitudes`;
 /// InvalidArgument for samples with other values than those that they repeat, of which it names the first in memory
-/// (missing equals missing). O(coordinates) time, if samples are left out.
+/// (missing equals missing; floating-point values may differ by 1e-12 of the largest one among these samples, float by
+/// 1e-6, as values of a formula do). O(coordinates) time.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] WithoutRepeated<T, N> without_repeated(const Image<T, N>& image, std::span<const CurvedAxis> curved,
@@ -116,6 +119,15 @@ requires DimensionBetween<N, 2, 5>
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] std::vector<int> longitude_axes(const Image<T, N>& image, std::span<const CurvedAxis> curved = {});
+
+/// The axis that a name of curved longitudes stands for: the one along which they run around the globe (as above, also
+/// with samples that repeat the first ones); else, for longitudes of a region, the one along which they grow most, if
+/// by more than twice what they grow along their own; else their own. In files with another order of dimensions, that
+/// is the axis of another coordinate. Of coordinates with another unit: their own. Errors: InvalidGrid (as
+/// `extract_curved`). O(coordinates) time.
+template <int N>
+requires DimensionBetween<N, 2, 4>
+[[nodiscard]] int axis_of_longitudes(const Grid<N>& grid, const CurvedAxis& longitudes);
 
 /// The periods on index_grid(grid, curved) of the seams: for `extract_periodic` there. Errors: InvalidGrid (as
 /// `extract_curved`).

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -297,6 +298,30 @@ std::vector<CurvedAxis> join_curved(std::vector<Member>& members, const RawGrid&
   return joined;
 }
 
+/// Throws UnsupportedData for plane grids in x, y or z whose constant coordinate, which is no axis, differs between
+/// files, unless it is the new axis.
+void require_same_plane(const std::vector<Member>& members, const Axis& added) {
+  const std::vector<SingleAxis>& singles = members.front().grid.single;
+  for (std::size_t s = 0; s < singles.size(); ++s) {
+    const Axis& first = singles[s].axis;
+    if (first.name != "x" && first.name != "y" && first.name != "z") continue;
+    const auto at = [s](const Member& member) {
+      return s < member.grid.single.size() ? member.grid.single[s].axis[0] : std::numeric_limits<double>::quiet_NaN();
+    };
+    std::size_t other = 0;
+    bool is_added = true;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      is_added = is_added && at(members[m]) == added[m];
+      if (other == 0 && at(members[m]) != first[0]) other = m;
+    }
+    if (other > 0 && !is_added)
+      fail(ErrorCode::UnsupportedData, members[other].path,
+           "has the constant coordinate {} = {}; expected {}, as {}, or grids with coordinates in three dimensions, "
+           "since plane ones cannot move out of their plane",
+           first.name, at(members[other]), first[0], members.front().path.string());
+  }
+}
+
 Members join(std::vector<Member>&& members, const SeriesOptions& options) {
   auto [last, direction] = make_axis(members, options);
   const Member& first = members.front();
@@ -304,6 +329,7 @@ Members join(std::vector<Member>&& members, const SeriesOptions& options) {
   for (const Axis& axis : first.grid.axes) result.layer *= axis.size();
   result.type = first.type;
   result.grid = with_last_axis(first.grid, std::move(last));
+  if (!first.info.curved.empty()) require_same_plane(members, result.grid.axes.back());
   std::vector<CurvedAxis> curved = join_curved(members, result.grid);
   result.info = first.info;
   result.info.curved = std::move(curved);
@@ -339,7 +365,10 @@ LayersOfFiles open_members(std::span<const fs::path> files, const SeriesOptions&
   Members members = join(read_headers(files, options, read), options);
   RawLayers result;
   result.grid = members.grid;
+  std::vector<CurvedAxis> curved = std::move(members.info.curved);  // not twice in memory: values do not need it
+  members.info.curved.clear();
   result.info = members.info;
+  result.info.curved = std::move(curved);
   std::vector<fs::path> paths = members.paths;
   result.read = [members = std::move(members), own = options, read](std::size_t begin, std::size_t count) {
     return read_values(members, begin, count, own.work.progress, read).value();

@@ -206,13 +206,16 @@ RawGrid curved_grid(OpenVtkImage& image, const std::array<std::size_t, 3>& order
   RawGrid grid{{}, Eigen::MatrixXd::Identity(3, 3), Eigen::VectorXd::Zero(3), {}};
   for (std::size_t c = 0; c < 3; ++c) {
     grid.axes.push_back(Axis::uniform(static_cast<std::size_t>(image.sizes[order[c]])));
-    if (c == dropped) continue;
+    if (c == dropped) continue;  // below
     CurvedAxis& one = image.info.curved.emplace_back();
     one.axis = static_cast<int>(image.info.curved.size()) - 1;
     one.along = dims == 2 ? 3u : 7u;
     one.values = std::move(columns[c]);
     one.name = std::string(1, "xyz"[c]);
   }
+  if (dropped == 3) return grid;
+  grid.axes[2] = Axis::uniform(1, columns[dropped].front());
+  grid.axes[2].name = std::string(1, "xyz"[dropped]);
   return grid;
 }
 
@@ -229,7 +232,9 @@ std::unique_ptr<OpenVtkImage> open_vtk(const fs::path& path, const ReadImageOpti
   image->grid = is_curved                           ? curved_grid(*image, order, options.work.progress)
                 : image->file.type() == "ImageData" ? uniform_grid(*image, order)
                                                     : rectilinear_grid(*image, order);
-  for (std::size_t a = 0; a < 3; ++a) image->grid.axes[a].name = std::string(1, (is_curved ? "ijk" : "xyz")[order[a]]);
+  for (std::size_t a = 0; a < 3; ++a)
+    if (std::string& name = image->grid.axes[a].name; name.empty())
+      name = std::string(1, (is_curved ? "ijk" : "xyz")[order[a]]);
   if (const auto time = image->file.time()) {
     image->grid.single.push_back({Axis::uniform(1, *time)});
     image->grid.single.back().axis.name = "t";

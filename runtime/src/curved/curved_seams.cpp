@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -165,6 +166,7 @@ std::vector<Period<N>> periods_of_seams(const Grid<N>& grid, std::span<const Cur
         for (std::size_t i = 0; i < grid.axes[c].size(); ++i) add(grid.axes[c][i]);
       if (std::isfinite(least)) periods[p].start += least;
     }
+  for (const Period<N>& period : periods) require_range(period, "a seam");
   return periods;
 }
 
@@ -183,19 +185,29 @@ requires DimensionBetween<N, 2, 4> AxisPeriods<N> index_periods(const Grid<N>& g
 
 namespace {
 
-/// The mean of the last coordinates along axis `a` less the first ones; NaN if none are known.
+/// The last coordinate along axis `a` less the first one, of each row in which both are known.
 template <int N>
-double mean_growth(const Grid<N>& grid, const CurvedAxis& one, int a) {
+std::vector<double> growths_of_rows(const Grid<N>& grid, const CurvedAxis& one, int a) {
   const std::size_t row = detail::size_along(one, grid, 0, a), block = row * grid.axes[a].size();
-  double sum = 0.0, count = 0.0;
+  std::vector<double> growths;
+  growths.reserve(one.size() / grid.axes[a].size());
   for (std::size_t first = 0; first < one.size(); first += block)
     for (std::size_t i = 0; i < row; ++i) {
-      const double step = one[first + block - row + i] - one[first + i];
-      if (!std::isfinite(step)) continue;
-      sum += step;
-      ++count;
+      const double growth = one[first + block - row + i] - one[first + i];
+      if (std::isfinite(growth)) growths.push_back(growth);
     }
-  return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+  return growths;
+}
+
+/// NaN of no numbers.
+double mean_of(std::span<const double> numbers) {
+  return std::accumulate(numbers.begin(), numbers.end(), 0.0) / static_cast<double>(numbers.size());
+}
+
+/// The mean of `growths_of_rows`; NaN if none are known.
+template <int N>
+double mean_growth(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  return mean_of(growths_of_rows(grid, one, a));
 }
 
 /// Whether the coordinates along axis `a` grow by a full turn from the first one to one step behind the last one, in
@@ -231,21 +243,32 @@ double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a
 }
 
 /// Throws InvalidArgument for a length of a seam of axis `a` along a curved coordinate unless the step across the seam,
-/// in the mean of all rows, has the direction in which the coordinates grow, and is less than half the length. Single
-/// rows may have other steps, as those beside the poles of a tripolar grid.
+/// in the mean of all rows, has the direction in which the coordinates grow, and is less than half the length, and if
+/// coordinates repeat the first ones in half of the rows: the row in which a tripolar grid is folded lowers the mean.
+/// Single rows may have other steps, as those beside the poles of such a grid.
 template <int N>
 void require_short_step(const Grid<N>& grid, const CurvedAxis& one, int a, double length) {
   constexpr double kRounding = 1e-6;  // of the length: coordinates may be of single precision
-  const double growth = mean_growth(grid, one, a), step = length - growth;
-  if (std::isnan(step) || (step / length > kRounding && step / length < 0.5)) return;
+  const std::vector<double> growths = growths_of_rows(grid, one, a);
+  const double growth = mean_of(growths), step = length - growth;
+  const auto repeats = [&](double of_row) {
+    return (length - of_row) / length <= kRounding && std::abs(length - of_row) < 0.5 * std::abs(length);
+  };
+  const auto rows = static_cast<std::size_t>(std::count_if(growths.begin(), growths.end(), repeats));
+  const bool is_short = std::isnan(step) || (step / length > kRounding && step / length < 0.5);
+  if (is_short && 2 * rows <= growths.size()) return;
   const std::string start = fmt::format("the period of {}, a curved axis, is {}, and ",
                                         detail::label_of_axis(grid.axes[a], a), std::abs(length));
+  const char* const expected =
+      "expected a longer period, or samples without the last ones, if these repeat the first ones";
+  if (is_short)
+    throw Error(ErrorCode::InvalidArgument,
+                start + fmt::format("the last coordinates are {} or more from the first ones, in {} of {} rows; {}",
+                                    std::abs(length), rows, growths.size(), expected));
   if (std::abs(step) < 0.5 * std::abs(length))
     throw Error(ErrorCode::InvalidArgument,
-                start + fmt::format("the last coordinates are {} from the first ones, in the mean of all rows; "
-                                    "expected a longer period, or samples without the last ones, if these repeat "
-                                    "the first ones",
-                                    std::abs(growth)));
+                start + fmt::format("the last coordinates are {} from the first ones, in the mean of all rows; {}",
+                                    std::abs(growth), expected));
   throw Error(ErrorCode::InvalidArgument,
               start + fmt::format("the step across the seam is {}, in the mean of all rows; expected less than half "
                                   "the period, or a period in the unit of the coordinates",
@@ -268,23 +291,14 @@ double mean_longest_step(const Grid<N>& grid, const CurvedAxis& one, int a) {
   return count > 0.0 ? sum / count : 0.0;
 }
 
-/// Throws InvalidArgument for longitudes that end far from where they begin, as those of a region do: they neither run
-/// around the globe nor return to their places, as along an O-grid around an island.
+/// How far longitudes end from where they begin along axis `a`, in the mean of all rows; 0 if they return there, as
+/// along an O-grid around an island: if the way back is at most about twice as long as the longest step.
 template <int N>
-void require_return(const Grid<N>& grid, const CurvedAxis& one, int a) {
+double span_of_region(const Grid<N>& grid, const CurvedAxis& one, int a) {
   constexpr double kLonger = 2.001;   // around an island in three steps, the last one may be twice the others
   constexpr double kRounding = 1e-3;  // degrees
   const double back = std::abs(mean_growth(grid, one, a));
-  for (int b = 0; b < N; ++b)
-    if (b != a && (one.along >> b & 1u) != 0 && std::abs(mean_growth(grid, one, b)) > back)
-      return;  // b runs along them
-  if (!(back > kRounding && back > kLonger * mean_longest_step(grid, one, a))) return;
-  throw Error(
-      ErrorCode::InvalidArgument,
-      fmt::format("the longitudes along {}, a curved axis, span {:.6g}, in the mean of all rows, so they neither run "
-                  "around the globe nor return to the first ones; expected a span of more than 180 and less "
-                  "than 360, or a given period",
-                  detail::label_of_axis(grid.axes[a], a), back));
+  return back > kRounding && back > kLonger * mean_longest_step(grid, one, a) ? back : 0.0;  // 0 for NaN
 }
 
 /// The length of a seam of axis `a` along longitudes: 360 if they grow by 180 or more, in the direction in which they
@@ -293,6 +307,22 @@ template <int N>
 double turn_across(const Grid<N>& grid, const CurvedAxis& one, int a) {
   const double growth = mean_growth(grid, one, a);
   return std::abs(growth) >= 0.5 * detail::kTurn ? std::copysign(detail::kTurn, growth) : 0.0;  // 0 for NaN
+}
+
+/// Throws InvalidArgument for longitudes that end far from where they begin, as those of a region do: they neither run
+/// around the globe nor return to their places, as along an O-grid around an island.
+template <int N>
+void require_return(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  for (int b = 0; b < N; ++b)
+    if (b != a && (one.along >> b & 1u) != 0 && turn_across(grid, one, b) != 0.0) return;  // b runs around the globe
+  const double back = span_of_region(grid, one, a);
+  if (back == 0.0) return;
+  throw Error(
+      ErrorCode::InvalidArgument,
+      fmt::format("the longitudes along {}, a curved axis, span {:.6g}, in the mean of all rows, so they neither run "
+                  "around the globe nor return to the first ones; expected a span of more than 180 and less "
+                  "than 360, or a given period",
+                  detail::label_of_axis(grid.axes[a], a), back));
 }
 
 }  // namespace
@@ -334,6 +364,27 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
 }
 
 template <int N>
+requires DimensionBetween<N, 2, 4>
+int axis_of_longitudes(const Grid<N>& grid, const CurvedAxis& longitudes) {
+  constexpr double kMore = 2.0;  // times the growth along their own axis
+  const std::span<const CurvedAxis> one(&longitudes, 1);
+  detail::require_curved<N>(grid, one);
+  if (!is_longitude_unit(longitudes.unit)) return longitudes.axis;
+  std::vector<int> around;
+  int longest = longitudes.axis;
+  double most = kMore * span_of_region(grid, longitudes, longest);
+  for (int a = 0; a < N; ++a) {
+    if ((longitudes.along >> a & 1u) == 0) continue;
+    if (is_around(grid, longitudes, a) || repeated_longitudes<N>(grid, one, a) > 0) around.push_back(a);
+    const double span = span_of_region(grid, longitudes, a);
+    if (a == longitudes.axis || !(span > most)) continue;
+    longest = a;
+    most = span;
+  }
+  return around.size() == 1 ? around.front() : longest;
+}
+
+template <int N>
 requires DimensionBetween<N, 2, 5> std::vector<int> longitude_axes(const Grid<N>& grid,
                                                                    std::span<const CurvedAxis> curved) {
   if constexpr (N == 5) {
@@ -362,6 +413,7 @@ requires DimensionBetween<N, 2, 5> std::vector<int> longitude_axes(const Grid<N>
   }                                                                                                                    \
   template AxisPeriods<N> index_periods<N>(const Grid<N>&, std::span<const CurvedAxis>, const CurvedSeams<N>&);        \
   template std::vector<int> longitude_axes<N>(const Grid<N>&, std::span<const CurvedAxis>);                            \
+  template int axis_of_longitudes<N>(const Grid<N>&, const CurvedAxis&);                                               \
   template std::vector<CurvedSeam<N>> find_seams<N>(const Grid<N>&, std::span<const CurvedAxis>, std::span<const int>, \
                                                     std::span<const double>);
 TEGL_INSTANTIATE_SEAMS(2)

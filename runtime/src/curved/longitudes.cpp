@@ -191,9 +191,9 @@ class Continued {
   Pieces pieces_;
 };
 
-/// 360, if the gap behind the last sample is positive and less than half a turn, and so are all steps: in 5D, these may
-/// be longer (`check_periods`).
-double turn_of(const Axis& axis, int a, bool may_have_long_steps) {
+/// 360 in the world, where `axis` is; if the gap behind the last sample is positive and less than half a turn, and so
+/// are all steps: in 5D, these may be longer (`check_periods`).
+double turn_of(const Axis& axis, int a, double scale, bool may_have_long_steps) {
   constexpr double kTolerance = 1e-3;  // of a step: coordinates in files may be of single precision
   const double length = std::abs(axis[axis.size() - 1] - axis[0]);
   const double step = length / static_cast<double>(axis.size() - 1);
@@ -210,23 +210,26 @@ double turn_of(const Axis& axis, int a, bool may_have_long_steps) {
     refuse(
         fmt::format("but its samples span {}, and the gap behind them is {}; expected less than 180, or a given "
                     "period, such as {}",
-                    length, kTurn - length, length + step));
+                    length, kTurn - length, (length + step) / scale));
   if (may_have_long_steps) return kTurn;
   if (const std::string reason = detail::too_long_steps(axis, a, kTurn); !reason.empty())
     throw Error(ErrorCode::InvalidArgument, reason);
   return kTurn;
 }
 
-/// The error about longitudes, by the unit of the world's axis, that the world map takes from other axes.
+/// The error about an axis with the unit of longitudes along which, by the world map, others differ, too, or instead.
 template <int N>
 [[noreturn]] void refuse_mixed(const Grid<N>& grid, int a) {
-  std::vector<std::string> along;
+  std::vector<std::string> others;
   for (int b = 0; b < N; ++b)
-    if (grid.linear[a][b] != 0.0) along.push_back(detail::label_of_axis(grid.axes[b], b));
+    if (b != a && grid.linear[b][a] != 0.0) others.push_back(detail::label_of_axis(grid.axes[b], b));
+  const std::string own = detail::label_of_axis(grid.axes[a], a);
+  const std::string also = fmt::format("{}", fmt::join(others, " and "));
   throw Error(ErrorCode::InvalidArgument,
-              fmt::format("the unit of {} is that of longitudes, but in the world, by the affine map, longitudes grow "
-                          "along {}; expected a given period, in the coordinates before the map, or another axis",
-                          detail::label_of_axis(grid.axes[a], a), fmt::join(along, " and ")));
+              fmt::format("the unit of {} is that of longitudes, but by the affine map, the world's coordinates of {} "
+                          "{} differ along it; expected a given period, in the coordinates before the map, or another "
+                          "axis",
+                          own, also, grid.linear[a][a] != 0.0 ? "also" : "and not its own"));
 }
 
 }  // namespace
@@ -238,7 +241,8 @@ requires DimensionBetween<N, 2, 5> AxisPeriods<N> default_periods(const Grid<N>&
     if (!is_longitude_unit(grid.axes[a].unit)) continue;
     const std::optional<Axis> axis = detail::axis_in_world(grid, a);
     if (!axis) refuse_mixed(grid, a);
-    periods[a] = turn_of(*axis, a, N == 5) / std::abs(grid.linear[a][a]);
+    const double scale = std::abs(grid.linear[a][a]);
+    periods[a] = turn_of(*axis, a, scale, N == 5) / scale;
   }
   return periods;
 }

@@ -59,48 +59,63 @@ std::size_t first_after_turn(std::size_t size, const Coordinate& coordinate) {
   return size;
 }
 
-/// Whether the coordinates at the end of a row repeat the first ones, `turn` further.
-template <class Coordinate>
-bool is_repeated(std::size_t size, std::size_t period, double turn, const Coordinate& coordinate) {
+/// Whether the coordinates at the end of a row repeat the first ones, to a tolerance, of which `beyond(difference)` is
+/// beyond zero.
+template <class Coordinate, class Beyond>
+bool is_repeated(std::size_t size, std::size_t period, double tolerance, const Coordinate& coordinate,
+                 const Beyond& beyond) {
   for (std::size_t i = 0; i + period < size; ++i) {
     const double first = coordinate(i), repeated = coordinate(i + period);
     if (std::isfinite(first) != std::isfinite(repeated)) return false;
-    const double tolerance = turn == 0.0
-                                 ? kSingleRounding * std::max(std::abs(first), std::abs(repeated))
-                                 : std::max(1e-3 * kTurn / static_cast<double>(period), kTurn * kSingleRounding);
-    if (std::isfinite(first) && !(std::abs(repeated - first - turn) <= tolerance)) return false;
+    if (std::isfinite(first) && !(std::abs(beyond(repeated - first)) <= tolerance)) return false;
   }
   return true;
 }
 
-/// Whether all coordinates at the end of an axis repeat those of the first samples: longitudes a turn further, others
-/// equally. `period`: the number of samples after which they repeat.
+double tolerance_of_longitudes(std::size_t period) {
+  return std::max(1e-3 * kTurn / static_cast<double>(period), kTurn * kSingleRounding);
+}
+
+auto coordinates_of_row(const CurvedAxis& one, const Rows& rows, std::size_t row) {
+  return [&one, first = rows.first(row), step = rows.step](std::size_t i) { return one[first + i * step]; };
+}
+
+/// Whether all coordinates at the end of an axis repeat those of the first samples: longitudes by turns, others
+/// equally. Where a tripolar grid is folded, longitudes run there and back, so they are no turn further.
+/// `period`: the number of samples after which they repeat.
 template <int N>
 bool is_repeated(const Grid<N>& grid, const CurvedAxis& one, int axis, std::size_t period) {
   const Rows rows = rows_along(one, grid, axis);
-  const auto row = [&](std::size_t r) {
-    return [&one, first = rows.first(r), step = rows.step](std::size_t i) { return one[first + i * step]; };
-  };
-  double turn = 0.0;
-  for (std::size_t r = 0; r < rows.count && turn == 0.0 && is_longitude_unit(one.unit); ++r)
-    if (std::isfinite(row(r)(0))) turn = std::copysign(kTurn, row(r)(period) - row(r)(0));
+  const bool is_longitude = is_longitude_unit(one.unit);
+  double tolerance = tolerance_of_longitudes(period);
+  if (!is_longitude) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < one.size(); ++i)
+      if (std::isfinite(one[i])) most = std::max(most, std::abs(one[i]));
+    tolerance = kSingleRounding * most;
+  }
+  const auto beyond = [=](double difference) { return is_longitude ? std::remainder(difference, kTurn) : difference; };
   for (std::size_t r = 0; r < rows.count; ++r)
-    if (!is_repeated(rows.size, period, turn, row(r))) return false;
+    if (!is_repeated(rows.size, period, tolerance, coordinates_of_row(one, rows, r), beyond)) return false;
   return true;
 }
 
-/// The number of samples along an axis of longitudes after which they are a turn further, by its own coordinates or by
-/// the first row of curved ones that begins with a known one; the axis's size if there is none.
+/// The number of samples along an axis of longitudes after which they are a turn further and repeat, by its own
+/// coordinates or by a row of curved ones; the axis's size if there is none.
 template <int N>
 std::size_t period_in_samples(const Grid<N>& grid, std::span<const CurvedAxis> curved, int axis) {
   const std::size_t size = grid.axes[axis].size();
   for (const CurvedAxis& one : curved) {
     if (!is_along(one, axis) || !is_longitude_unit(one.unit)) continue;
     const Rows rows = rows_along(one, grid, axis);
+    std::size_t refused = size;
     for (std::size_t r = 0; r < rows.count; ++r) {
-      const auto coordinate = [&](std::size_t i) { return one[rows.first(r) + i * rows.step]; };
-      if (std::isfinite(coordinate(0))) return first_after_turn(size, coordinate);
+      const std::size_t period = first_after_turn(size, coordinates_of_row(one, rows, r));
+      if (period == size || period == refused) continue;
+      if (is_repeated(grid, one, axis, period)) return period;
+      refused = period;
     }
+    return size;
   }
   const bool is_curved =
       std::any_of(curved.begin(), curved.end(), [&](const CurvedAxis& one) { return one.axis == axis; });
@@ -109,8 +124,35 @@ std::size_t period_in_samples(const Grid<N>& grid, std::span<const CurvedAxis> c
   if (!own) return size;
   const auto coordinate = [&](std::size_t i) { return (*own)[i]; };
   const std::size_t period = first_after_turn(size, coordinate);
-  const double turn = own->is_descending() ? -kTurn : kTurn;
-  return period < size && is_repeated(size, period, turn, coordinate) ? period : size;
+  if (period == size) return size;
+  const auto beyond_turn = [turn = own->is_descending() ? -kTurn : kTurn](double difference) {
+    return difference - turn;
+  };
+  return is_repeated(size, period, tolerance_of_longitudes(period), coordinate, beyond_turn) ? period : size;
+}
+
+/// The next sample in memory, of those from `first` on along an axis; false behind the last one.
+template <Value T, int N>
+bool advance(const Image<T, N>& image, SampleIndex<N>& index, std::size_t axis = 0, std::size_t first = 0) {
+  for (std::size_t a = 0; a < N; ++a) {
+    if (++index[a] < image.size(static_cast<int>(a))) return true;
+    index[a] = a == axis ? first : 0;
+  }
+  return false;
+}
+
+/// How far two values of samples at the same place may be apart: a formula of their coordinates may have other rounding
+/// a turn further. 0 for integers.
+template <Value T, int N>
+double tolerance_of_values(const Image<T, N>& ends) {
+  if constexpr (!std::is_floating_point_v<T>) return 0.0;
+  double most = 0.0;
+  SampleIndex<N> index{};
+  for (bool more = true; more; more = advance(ends, index)) {
+    const auto value = std::abs(static_cast<double>(ends(index)));
+    if (std::isfinite(value)) most = std::max(most, value);
+  }
+  return (sizeof(T) == sizeof(float) ? 1e-6 : 1e-12) * most;
 }
 
 /// The first sample in memory among the last `count` ones along an axis whose value is not the one that it repeats.
@@ -120,17 +162,18 @@ std::optional<SampleIndex<N>> first_other_value(const Image<T, N>& image, int ax
   const std::size_t period = image.size(axis) - count;
   SampleIndex<N> index{};
   index[along] = period;
-  for (bool more = true; more;) {
+  std::optional<double> tolerance;  // unless all are equal
+  do {
     SampleIndex<N> first = index;
     first[along] -= period;
     const T one = image(first), other = image(index);
-    if (!(one == other || (one != one && other != other))) return index;  // NaN does not equal itself
-    more = false;
-    for (std::size_t a = 0; a < N && !more; ++a) {
-      more = ++index[a] < image.size(static_cast<int>(a));
-      if (!more) index[a] = a == along ? period : 0;
-    }
-  }
+    if (one == other || (one != one && other != other)) continue;  // NaN does not equal itself
+    if (!tolerance)
+      tolerance = std::max(tolerance_of_values<T, N>(image.part(axis, 0, count)),
+                           tolerance_of_values<T, N>(image.part(axis, period, count)));
+    const double apart = std::abs(static_cast<double>(one) - static_cast<double>(other));
+    if (*tolerance == 0.0 || !(apart <= *tolerance)) return index;
+  } while (advance(image, index, along, period));
   return std::nullopt;
 }
 

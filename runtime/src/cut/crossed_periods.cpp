@@ -291,7 +291,7 @@ void fail_far(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& crosse
       fmt::format("{} has {}, with the period {} from {}; expected at most {} periods from there", what,
                   is_place ? fmt::format("the coordinate {} along {}", factor * height,
                                          name.empty() ? fmt::format("axis {}", axis) : "the axis " + name)
-                           : fmt::format("the offset {} along the normal", factor * height),
+                           : fmt::format("the coordinate {} along the normal", factor * height),
                   std::abs(factor * crossed.height), factor * crossed.across.start * crossed.height, kFarthest));
 }
 

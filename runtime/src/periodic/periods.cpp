@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <Eigen/LU>
 
 #include "base/periods.hpp"
@@ -73,6 +74,7 @@ template <int N>
 requires DimensionBetween<N, 2, 5> AxisPeriods<N> longitude_periods(const Grid<N>& grid) {
   AxisPeriods<N> periods{};
   for (int a = 0; a < N; ++a) {
+    if (!is_longitude_unit(grid.axes[a].unit)) continue;
     const std::optional<Axis> axis = detail::axis_in_world(grid, a);
     if (axis && is_longitude(*axis)) periods[a] = detail::kTurn / std::abs(grid.linear[a][a]);
   }
@@ -94,9 +96,12 @@ std::string label_of_axis(const Axis& axis, int number) {
 
 template <int N>
 std::optional<Axis> axis_in_world(const Grid<N>& grid, int axis) {
-  if (!grid.is_separate(axis)) return std::nullopt;
-  const Axis& own = grid.axes[axis];
+  constexpr double kRounding = 1e-6;  // beside the axis's own coordinate
   const double scale = grid.linear[axis][axis], first = grid.offset[axis];
+  for (int a = 0; a < N; ++a)
+    if (!(scale != 0.0 && (a == axis || std::abs(grid.linear[a][axis]) <= kRounding * std::abs(scale))))
+      return std::nullopt;
+  const Axis& own = grid.axes[axis];
   if (scale == 1.0 && first == 0.0) return own;
   Axis moved;
   if (own.is_uniform()) {
@@ -157,6 +162,20 @@ void check_periods(const Grid<N>& grid, const AxisPeriods<N>& periods, const Ext
 }
 
 template <int N>
+void require_range(const Period<N>& period, const std::string& axis) {
+  double square = 0.0, of_dual = 0.0;
+  for (int a = 0; a < N; ++a) {
+    square += period.vector[a] * period.vector[a];
+    of_dual += period.dual[a] * period.dual[a];
+  }
+  if (std::isnormal(square) && std::isnormal(of_dual) && std::isfinite(period.start)) return;
+  throw Error(ErrorCode::InvalidGrid,
+              fmt::format("the period of {} is the vector ({:.6g}) in space; expected a length from 1e-150 to 1e150, "
+                          "whose square double represents, and a first sample not too far away",
+                          axis, fmt::join(period.vector, ", ")));
+}
+
+template <int N>
 std::vector<Period<N>> world_periods(const Grid<N>& grid, const AxisPeriods<N>& periods) {
   const Eigen::Matrix<double, N, N> linear = as_eigen(grid.linear);
   const Eigen::Matrix<double, N, N> inverse = linear.inverse();
@@ -173,12 +192,14 @@ std::vector<Period<N>> world_periods(const Grid<N>& grid, const AxisPeriods<N>& 
       period.dual[a] = inverse(b, a) / length;
     }
     period.start = share_of(period, first);
+    require_range(period, label_of_axis(grid.axes[b], b));
   }
   return result;
 }
 
 #define TEGL_INSTANTIATE_PERIODS(N)                                                             \
   template std::optional<Axis> axis_in_world<N>(const Grid<N>&, int);                           \
+  template void require_range<N>(const Period<N>&, const std::string&);                         \
   template void check_periods<N>(const Grid<N>&, const AxisPeriods<N>&, const ExtractOptions&); \
   template std::vector<Period<N>> world_periods<N>(const Grid<N>&, const AxisPeriods<N>&);
 TEGL_INSTANTIATE_PERIODS(2)

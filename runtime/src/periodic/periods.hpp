@@ -16,8 +16,9 @@ inline constexpr double kTurn = 360.0;  ///< longitudes repeat after it, in degr
 /// An axis in messages, such as "axis 0 (lon)"; one without a name is x, y, z or t.
 [[nodiscard]] std::string label_of_axis(const Axis& axis, int number);
 
-/// An axis with its coordinates in the world, where its unit is that of longitudes; none if the world map mixes it with
-/// others, or puts others in its place.
+/// An axis with its coordinates in the world, up to a constant, where its unit is that of longitudes; none if another
+/// world coordinate differs along it, beyond a millionth. Its own one may differ along other axes, too, as in a moving
+/// frame: the period does not.
 template <int N>
 [[nodiscard]] std::optional<Axis> axis_in_world(const Grid<N>& grid, int axis);
 
@@ -29,6 +30,11 @@ template <int N>
 /// Throws InvalidArgument for bad periods, and for options that periodic extraction does not have.
 template <int N>
 void check_periods(const Grid<N>& grid, const AxisPeriods<N>& periods, const ExtractOptions& options);
+
+/// Throws InvalidGrid for a period of `axis` (in messages) so long or short that squares overflow: its products with
+/// points would not be numbers.
+template <int N>
+void require_range(const Period<N>& period, const std::string& axis);
 
 /// The periods of a wrapped contour of an image on `grid`.
 template <int N>

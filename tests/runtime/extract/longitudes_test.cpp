@@ -3,6 +3,7 @@
 // Longitudes: under affine maps, of regions, and with samples that repeat the first ones a turn further.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -47,22 +48,50 @@ TEST(Longitudes, OfAnAffineMapHaveTheirPeriodInTheWorld) {
   // 360 columns are not the globe
   EXPECT_EQ(longitude_axes(affine_grid(360, 0.5)), std::vector<int>{});
   EXPECT_EQ(longitude_axes(affine_grid(360, 1.0)), std::vector<int>{0});
-  expect_error(ErrorCode::InvalidArgument, "its samples span 174.5, and the gap behind them is 185.5",
+  // the given period is in the coordinates before the map
+  expect_error(ErrorCode::InvalidArgument,
+               "its samples span 174.5, and the gap behind them is 185.5; expected less than 180, or a given period, "
+               "such as 350",
                [&] { (void)default_periods(affine_grid(350, 0.5), axes); });
 }
 
 TEST(Longitudes, MixedWithOtherAxesHaveNoDefaultPeriod) {
   Grid<2> grid = affine_grid(300, 1.2);
-  grid.linear = {{{1.2, 0.1}, {0.0, 1.0}}};
   const auto refuses = [&](const char* text) {
     EXPECT_EQ(longitude_axes(grid), std::vector<int>{});
     expect_error(ErrorCode::InvalidArgument, text, [&] { (void)default_periods(grid, std::array{0}); });
   };
+  grid.linear = {{{1.2, 0.0}, {0.1, 1.0}}};
   refuses(
-      "the unit of axis 0 (lon) is that of longitudes, but in the world, by the affine map, longitudes grow along "
-      "axis 0 (lon) and axis 1 (y); expected a given period");
+      "the unit of axis 0 (lon) is that of longitudes, but by the affine map, the world's coordinates of axis 1 (y) "
+      "also differ along it; expected a given period");
   grid.linear = {{{0.0, 1.2}, {1.0, 0.0}}};
-  refuses("longitudes grow along axis 1 (y); expected");
+  refuses("the world's coordinates of axis 1 (y) and not its own differ along it; expected");
+  // only the vector of the axis matters: rounding, and a frame that moves along another axis
+  for (const auto& [along_y, of_lon] : {std::pair{1e-17, 0.0}, std::pair{0.0, 3.0}, std::pair{1e-17, 1e-17}}) {
+    grid.linear = {{{1.2, of_lon}, {along_y, 1.0}}};
+    EXPECT_EQ(longitude_axes(grid), std::vector<int>{0});
+    EXPECT_EQ(default_periods(grid, std::array{0})[0], 300.0);
+    EXPECT_DOUBLE_EQ(contour_periods(grid, {300.0, 0.0}).at(0).vector[0], 360.0);
+  }
+}
+
+TEST(Longitudes, OtherUnitsAreNotReadAsThem) {
+  Grid<2> grid = affine_grid(36, 10.0);
+  grid.axes[1] = Axis::rectilinear({0.0, 1e-9, 3e-9});  // in the world, two of them coincide
+  grid.offset[1] = 1e9;
+  EXPECT_EQ(longitude_axes(grid), std::vector<int>{0});
+}
+
+TEST(Longitudes, PeriodsWhoseSquaresAreNoNumbersAreErrors) {
+  for (const double step : {1e160, 1e-160}) {
+    const Grid<2> grid = affine_grid(36, step);
+    expect_error(ErrorCode::InvalidGrid, "the period of axis 0 (lon) is the vector (3.6e", [&] {
+      (void)contour_periods(grid, {36.0, 0.0});
+    });
+  }
+  for (const double step : {1e100, 1e-100})
+    EXPECT_EQ(contour_periods(affine_grid(36, step), {36.0, 0.0}).at(0).vector[0], 36.0 * step);
 }
 
 /// A globe of 36 columns, with coordinates by two indices or straight ones; `repeated` of its columns follow again.
@@ -152,6 +181,87 @@ TEST(Longitudes, SamplesWithOtherValuesOrCoordinatesAreNotLeftOut) {
   }
 }
 
+TEST(Longitudes, RepeatedLatitudesMayDifferByRounding) {
+  Globe longer = globe(1, true);
+  for (std::size_t s = 0; s < longer.image.values.size(); ++s) {
+    CurvedAxis& latitudes = longer.curved[1];
+    if (s / 37 == 8) latitudes.values[s] = s % 37 == 36 ? -2.4e-16 : latitudes.values[s] - latitudes.values[8 * 37];
+  }
+  EXPECT_EQ(longer.curved[1].values[8 * 37], 0.0);
+  EXPECT_EQ(repeated_longitudes<2>(longer.image.grid, longer.curved, 0), 1u);
+  longer.curved[1].values[8 * 37 + 36] = 1e-3;
+  EXPECT_EQ(repeated_longitudes<2>(longer.image.grid, longer.curved, 0), 0u);
+}
+
+TEST(Longitudes, RepeatedValuesMayDifferByRounding) {
+  const auto left_out = [&]<class T>(T relative) {
+    const Globe longer = globe(1, false);
+    OwnedImage<T, 2> image;
+    image.grid = longer.image.grid;
+    for (const double value : longer.image.values) image.values.push_back(static_cast<T>(value));
+    T& last = image.values[37 * 8 + 36];  // the largest value is 40
+    last += relative * 40;
+    return without_repeated<T, 2>(image.view(), {}, std::array{0}).left_out[0];
+  };
+  EXPECT_EQ(left_out(0.5e-12), 1u);
+  EXPECT_EQ(left_out(0.5e-6F), 1u);
+  expect_error(ErrorCode::InvalidArgument, "but with other values", [&] { (void)left_out(2e-12); });
+  expect_error(ErrorCode::InvalidArgument, "but with other values", [&] { (void)left_out(2e-6F); });
+}
+
+/// A globe as `globe`, whose last row runs there and back, as the row in which a tripolar grid is folded.
+Globe folded_globe(std::size_t repeated) {
+  Globe result = globe(repeated, true);
+  const std::size_t columns = 36 + repeated;
+  for (std::size_t i = 0; i < columns; ++i) {
+    const std::size_t x = i % 36;
+    result.curved[0].values[columns * 16 + i] = -175.0 + 9.0 * static_cast<double>(std::min(x, 36 - x));
+  }
+  return result;
+}
+
+TEST(Longitudes, RepeatedSamplesOfATripolarGridAreLeftOut) {
+  const std::array axes{0};
+  const Globe plain = folded_globe(0);
+  for (const std::size_t repeated : {1U, 2U}) {
+    const Globe longer = folded_globe(repeated);
+    const auto kept = without_repeated<double, 2>(longer.image.view(), longer.curved, axes);
+    ASSERT_EQ(kept.left_out[0], repeated);
+    EXPECT_EQ(kept.curved[0].values, plain.curved[0].values);
+    EXPECT_EQ(find_seams(kept.image.grid(), kept.curved, axes)[0].vector, (Vector<2>{360.0, 0.0}));
+    EXPECT_EQ(axis_of_longitudes(longer.image.grid, longer.curved[0]), 0);
+    // not left out
+    expect_error(ErrorCode::InvalidArgument,
+                 "the last coordinates are 360 or more from the first ones, in 16 of 17 rows; expected a longer period",
+                 [&] { (void)find_seams(longer.image.grid, longer.curved, axes); });
+  }
+}
+
+TEST(Longitudes, OfASlantedRegionAreErrors) {
+  Grid<2> grid = Grid<2>::unit({12, 12});
+  std::vector<CurvedAxis> curved = {{0, 3, {}, "lon", "degrees_east"}, {1, 3, {}, "lat", "degrees_north"}};
+  for (int j = 0; j < 12; ++j)
+    for (int i = 0; i < 12; ++i) {
+      curved[0].values.push_back(-60 + 10 * i - 11 * j);
+      curved[1].values.push_back(5 * j + 4 * i);
+    }
+  for (const auto& [axis, text] : {std::pair{0, "span 110"}, std::pair{1, "span 121"}})
+    expect_error(ErrorCode::InvalidArgument, text, [&] { (void)find_seams(grid, curved, std::array{axis}); });
+  EXPECT_EQ(axis_of_longitudes(grid, curved[0]), 0);  // by far the most along neither axis
+}
+
+TEST(Longitudes, StandForTheAxisAlongWhichTheyGrow) {
+  for (const double last : {-65.0, 175.0, 185.0}) {  // a region, the globe, and with a repeated column
+    Grid<2> grid = Grid<2>::unit({8, static_cast<std::size_t>(last + 175.0) / 10 + 1});
+    CurvedAxis lon{0, 3, {}, "lon", "degrees_east"};
+    for (std::size_t j = 0; j < grid.axes[1].size(); ++j)
+      for (int i = 0; i < 8; ++i) lon.values.push_back(-175.0 + 10.0 * static_cast<double>(j) + 0.5 * i);
+    EXPECT_EQ(axis_of_longitudes(grid, lon), 1);
+    lon.unit = "m";
+    EXPECT_EQ(axis_of_longitudes(grid, lon), 0);
+  }
+}
+
 TEST(Longitudes, OfCurvedGridsThatDoNotRunAroundTheGlobeOnceAreErrors) {
   const std::array axes{0};
   const auto refuses = [&](const Globe& one, const char* text) {
@@ -186,6 +296,7 @@ TEST(Longitudes, OfAGridAroundAnIslandReturnToTheirPlaces) {
           curved[1].values.push_back(-5.0 + (1 + j) * std::sin(angle));
         }
       EXPECT_EQ(find_seams(grid, curved, std::array{0})[0].vector, (Vector<2>{})) << count << " " << first;
+      EXPECT_EQ(axis_of_longitudes(grid, curved[0]), 0);
     }
 }
 

@@ -377,13 +377,13 @@ TEST(PeriodicCuts, PlacesFarFromAPeriodAreErrorsUnlessTheyAreModuloIt) {
   expect_error(ErrorCode::InvalidArgument, "a cut across a period has the coordinate -1000000000000 along axis 2", [&] {
     (void)slice_stack(contour, {Hyperplane<3>::across(2, 0.5), Hyperplane<3>::across(2, -1e12)});
   });
-  expect_error(ErrorCode::InvalidArgument, "the offset 1e+300 along the normal, with the period 0.3", [&] {
+  expect_error(ErrorCode::InvalidArgument, "the coordinate 1e+300 along the normal, with the period 0.3", [&] {
     (void)slice(contour, {{3.0, 3.0, 0.0}, 1e300});
   });
   EXPECT_TRUE(is_closed(check(slice(contour, Hyperplane<3>::across(1, 1e12 + 0.25)))));
   auto hostile = contour;
   hostile.vertices[3] = {0.0, 0.0, 1e12};
-  expect_error(ErrorCode::InvalidArgument, "vertex 3 has the offset 3000000000000 along the normal", [&] {
+  expect_error(ErrorCode::InvalidArgument, "vertex 3 has the coordinate 3000000000000 along the normal", [&] {
     (void)slice(hostile, {{0.0, 3.0, 3.0}, 0.5});
   });
   // dual vectors that are wrong do not lead to more work
