@@ -479,15 +479,16 @@ std::vector<AxisNames> names_of_axes(const Grid<N>& grid) {
 /// The axes that the names of curved coordinates stand for: of longitudes `axis_of_longitudes`. In a file with the
 /// other order of dimensions that is the axis of another coordinate, which gets theirs.
 template <int N>
-std::vector<int> axes_of_names(const Grid<N>& grid, const std::vector<CurvedAxis>& curved) {
+std::vector<int> axes_of_names([[maybe_unused]] const Grid<N>& grid, const std::vector<CurvedAxis>& curved) {
   std::vector<int> axes;
   for (const CurvedAxis& one : curved) axes.push_back(one.axis);
-  for (std::size_t c = 0; c < curved.size(); ++c) {
-    if (!is_longitude_unit(curved[c].unit)) continue;
-    const int axis = axis_of_longitudes<N>(grid, curved[c]);
-    std::replace(axes.begin(), axes.end(), axis, axes[c]);
-    axes[c] = axis;
-  }
+  if constexpr (N <= 4)  // 5D images are not curved
+    for (std::size_t c = 0; c < curved.size(); ++c) {
+      if (!is_longitude_unit(curved[c].unit)) continue;
+      const int axis = axis_of_longitudes<N>(grid, curved[c]);
+      std::replace(axes.begin(), axes.end(), axis, axes[c]);
+      axes[c] = axis;
+    }
   return axes;
 }
 
