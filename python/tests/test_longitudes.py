@@ -76,4 +76,4 @@ def test_times_that_are_longitudes_keep_their_order_and_their_numbers():
 def test_periods_whose_squares_are_no_numbers_are_errors():
     values = np.random.default_rng(2).random((8, 8, 8))
     with pytest.raises(ValueError, match="the period of axis . .*; expected a length from 1e-150 to 1e150"):
-        tegl.contour(values, 0.5, periodic="all", affine=np.hstack([np.eye(3) * 1e160, np.zeros((3, 1))]))
+        tegl.contour(values, 0.5, periodic="all", dtype=float, affine=np.hstack([np.eye(3) * 1e160, np.zeros((3, 1))]))
