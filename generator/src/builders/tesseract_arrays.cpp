@@ -167,8 +167,7 @@ void define_frames(std::string& text) {
       [](unsigned f) {
         std::array<std::array<std::uint32_t, 64>, 2> lifted{};
         for (unsigned e = 0; e < CubeLists::kCubeEdges; ++e)
-          for (unsigned set = 0; set < 64; ++set)
-            lifted[e / 6][set] |= (set >> e % 6 & 1u) << lifted_vertex(f, e);
+          for (unsigned set = 0; set < 64; ++set) lifted[e / 6][set] |= (set >> e % 6 & 1u) << lifted_vertex(f, e);
         return fmt::format("{{{{{{{{{}}}}},{{{{{}}}}}}}}}", fmt::join(lifted[0], ","), fmt::join(lifted[1], ","));
       },
       "{{", "}}");
