@@ -95,9 +95,9 @@ class TrackGraph:
 
         def segment(one: dict[str, typing.Any]) -> TrackSegment:
             times = given or {}
-            one["samples"] = [TrackSample(**{**turned(sample, "centroid", "lower", "upper"),
-                                             "time": times.get(sample["time"], sample["time"])})
-                              for sample in one["samples"]]
+            for sample in one["samples"]:
+                sample["time"] = times.get(sample["time"], sample["time"])
+            one["samples"] = [TrackSample(**turned(sample, "centroid", "lower", "upper")) for sample in one["samples"]]
             return TrackSegment(**one)
 
         self.segments: list[TrackSegment] = [segment(one) for one in core.segments()]
