@@ -160,32 +160,30 @@ void bind_contour(py::module_& m) {
     return c.direction == GradientDirection::descent ? "descent" : "ascent";
   };
   const auto periods = [](const auto& c, const py::object&) { return period_numbers(c.periods); };
-  const auto has_all_offsets = [](const AnyContour& contour, const std::vector<double>& normal) {
-    return std::visit(
-        [&]<int N, class Real>(const Contour<N, Real>& c) {
-          if constexpr (N >= 3) {
-            if (c.periods.empty() || normal.size() != N) return false;
-            Vector<N> components;
-            std::copy(normal.begin(), normal.end(), components.begin());
-            return cut_period<N>(c.periods, components).has_value();
-          }
-          return false;
-        },
-        contour.contour);
+  // A property of a wrapped contour and of the hyperplanes with a normal; `otherwise` for other contours.
+  const auto of_wrapped = [](bool otherwise, const auto& property) {
+    return [=](const AnyContour& contour, const std::vector<double>& normal) {
+      return std::visit(
+          [&]<int N, class Real>(const Contour<N, Real>& c) {
+            if constexpr (N >= 3) {
+              if (c.periods.empty() || normal.size() != N) return otherwise;
+              Hyperplane<N> hyperplane;
+              std::copy(normal.begin(), normal.end(), hyperplane.normal.begin());
+              return property(c.periods, hyperplane);
+            }
+            return otherwise;
+          },
+          contour.contour);
+    };
   };
-  const auto cuts = [](const AnyContour& contour, const std::vector<double>& normal) {
-    return std::visit(
-        [&]<int N, class Real>(const Contour<N, Real>& c) {
-          if constexpr (N >= 3) {
-            if (c.periods.empty() || normal.size() != N) return true;
-            Hyperplane<N> hyperplane;
-            std::copy(normal.begin(), normal.end(), hyperplane.normal.begin());
-            return cuts_wrapped<N>(c.periods, hyperplane);
-          }
-          return true;
-        },
-        contour.contour);
-  };
+  const auto has_all_offsets =
+      of_wrapped(false, []<int N>(const std::vector<Period<N>>& repeated, const Hyperplane<N>& hyperplane) {
+        return cut_period<N>(repeated, hyperplane.normal).has_value();
+      });
+  const auto cuts =
+      of_wrapped(true, []<int N>(const std::vector<Period<N>>& repeated, const Hyperplane<N>& hyperplane) {
+        return cuts_wrapped<N>(repeated, hyperplane);
+      });
   const auto of_vertices = [](const auto& c, const py::object& self) {
     return attribute_arrays(c.vertex_attributes, self);
   };
