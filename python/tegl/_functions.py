@@ -78,7 +78,7 @@ def frame_of(contour: Contour, *, normal: Sequence[float] | np.ndarray, offset: 
         cut = tegl.slice(contour, normal=(0, 1, 1, 0), offset=9)
         points = frame.to_space(cut.vertices)                # origin + cut.vertices @ axes
 
-    Numbers of points and vectors are in the order of the columns of `vertices`, also those of the normal. It is defined
+    The coordinates of points, vectors and the normal are in the order of the columns of `vertices`. The frame is defined
     for every contour, also where the cut is empty.
     """
     _arguments.core_of(contour)
