@@ -306,11 +306,13 @@ void add_rings(const Contour<N, Real>& contour, const std::vector<CellSimplices>
                bool are_caps, Rings& rings) {
   CellPolygons polygons;
   std::size_t at = from;
-  for (const auto& [cell, signature, end] : cells) {
+  for (const CellSimplices& of : cells) {
     std::uint8_t number = 0;
-    const auto add = [&](std::span<const Index> ring) { rings.add(ring, {cell, signature, 0, number++, are_caps}); };
-    const std::span simplices(contour.simplices.data() + at, from + end - at);
-    at = from + end;
+    const auto add = [&](std::span<const Index> ring) {
+      rings.add(ring, {of.cell, of.signature, 0, number++, are_caps});
+    };
+    const std::span simplices(contour.simplices.data() + at, from + of.end - at);
+    at = from + of.end;
     if constexpr (N == 2)
       for (const auto& segment : simplices) add(segment);
     else
@@ -407,19 +409,19 @@ class Polyhedra {
            FacetsOfCell& facets) {
     CellPolyhedra in_cell;
     std::size_t at = from;
-    for (const auto& [cell, signature, end] : cells) {
-      facets.set_cell(cell);
+    for (const CellSimplices& of : cells) {
+      facets.set_cell(of.cell);
       std::uint8_t number = 0;
-      in_cell.for_each(std::span(contour.simplices.data() + at, from + end - at), facets,
+      in_cell.for_each(std::span(contour.simplices.data() + at, from + of.end - at), facets,
                        [&](std::span<const Index> ring, bool is_first) {
                          if (is_first) {
-                           places.push_back({cell, signature, 0, number++, are_caps});
+                           places.push_back({of.cell, of.signature, 0, number++, are_caps});
                            ends.push_back(all_.ends.size());
                          }
                          all_.add(ring, {});
                          ends.back() = all_.ends.size();
                        });
-      at = from + end;
+      at = from + of.end;
     }
   }
 

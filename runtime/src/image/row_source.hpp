@@ -36,8 +36,9 @@ class RowSource : public SampleSource<N> {
   }
   void edge_alphas(std::size_t k, int axis, const EdgesInRows& edges, double* out) const noexcept final;
   /// edge_alphas from the samples at both ends of each edge.
-  void alphas_between(const T* from, const T* to, std::size_t count,
-                      double* out) const noexcept requires std::is_same_v<T, float> {
+  template <class U>  // a template, so that it is not instantiated with the class
+  void alphas_between(const U* from, const U* to, std::size_t count, double* out) const noexcept
+      requires(std::is_same_v<T, float>&& std::is_same_v<U, float>) {
     detail::alphas_between(from, to, count, this->isovalue(), epsilon_, out);
   }
   void cell_alphas(const Index& base, unsigned axes, std::uint32_t edges, double* out) const noexcept final;

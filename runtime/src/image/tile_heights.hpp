@@ -26,7 +26,8 @@ class TileHeights {
   [[nodiscard]] double level(const std::array<double, K>& end) const noexcept;
 
   /// Sets the levels of `rays`, equal to those of `level`.
-  void find_levels(TesseractRays& rays) const noexcept requires(K == 4) {
+  template <int M = K>  // a template, so that it is not instantiated with the class
+  void find_levels(TesseractRays& rays) const noexcept requires(M == 4) {
     detail::find_levels(products_, epsilon_, rays);
   }
   [[nodiscard]] const std::array<double, kCorners>& products() const noexcept { return products_; }

@@ -369,7 +369,7 @@ class NonmanifoldSplitter {
   }
 
   Index add_centroid(const std::array<Index, 3>& triangle) {
-    const auto [a, b, c] = triangle;
+    const Index a = triangle[0], b = triangle[1], c = triangle[2];
     const Index m = add_vertex(a, b);
     const auto mean = [&](auto& points) {
       for (int i = 0; i < N; ++i) points[m][i] = (points[a][i] + points[b][i] + points[c][i]) / 3;
