@@ -32,15 +32,17 @@ AnyContour to_any_contour(Mesh&& mesh);
 /// Calls f with a contour in 2, 3 or 4 dimensions. Throws UnsupportedData for one in 5.
 template <class Any, class F>
 decltype(auto) visit_to_4d(Any& contour, const F& f) {
-  using Result = decltype(f(std::get<0>(contour)));
-  return std::visit(
-      [&]<int N>(Contour<N, double>& one) -> Result {
-        if constexpr (N <= 4)
-          return f(one);
-        else
-          throw_5d();
-      },
-      contour);
+  // Not by std::visit: clang 14 does not instantiate member templates that f calls from a lambda in a lambda.
+  switch (contour.index()) {
+    case 0:
+      return f(std::get<0>(contour));
+    case 1:
+      return f(std::get<1>(contour));
+    case 2:
+      return f(std::get<2>(contour));
+    default:
+      throw_5d();
+  }
 }
 
 /// Reads a mesh with finite coordinates. Throws MalformedFile if a coordinate is infinite or NaN, and errors of
