@@ -24,6 +24,7 @@ import tables
 
 KEPT = machine.ROOT / "bench/results/resolved.json"
 RULES = ("low", "mean", "saddle", "squares", "decider")
+STARTS = 41  # processes of each rule
 
 
 @dataclasses.dataclass
@@ -101,6 +102,17 @@ def verdicts(case: Case, sides: dict) -> list[dict]:
     return found
 
 
+def measure_start(options) -> dict:
+    """The first contour of a process, and the least of later ones: medians of many processes."""
+    times = {rule: [] for rule in RULES}
+    for _ in range(STARTS):
+        for rule in RULES:
+            text = subprocess.run([options.build / "bench/first_contour", rule], check=True, capture_output=True, text=True)
+            times[rule].append([float(ms) for ms in text.stdout.split()])
+    return {rule: {"first_ms": statistics.median(run[0] for run in runs), "later_ms": statistics.median(run[1] for run in runs),
+                   "runs": len(runs)} for rule, runs in times.items()}
+
+
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=machine.ROOT / "build/release")
@@ -129,6 +141,8 @@ def main() -> None:
             result["rows"].append(measure(case, threads, options))
             print(f"{case.name}, {threads}: " + ", ".join(f"{rule} {side['median_ms']:.2f} ms ({side['ratio']:.2f}×)"
                                                           for rule, side in result["rows"][-1]["sides"].items()), flush=True)
+    if not options.only:
+        result["start"] = measure_start(options)
     print("\n".join(["", *machine.lines(result["machine"]), "", *tables.resolved(result)]))
     options.kept.parent.mkdir(parents=True, exist_ok=True)
     options.kept.write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")

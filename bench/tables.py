@@ -196,6 +196,11 @@ def resolved(result: dict) -> list[str]:
                           if side else "")
         text.append(f"| {row['name']} | {row['threads']} | {low['median_ms']:.2f} | {1e6 * low['median_ms'] / low['active_tiles']:.1f}"
                     f" | {' | '.join(ratios)} | {'; '.join(map(resolved_verdict, row['verdicts']))} |")
+    if "start" in result:
+        text += ["", "The first contour of a process, of noise in 6⁴ samples, and the least of the next 20 (medians of processes, one thread):", "",
+                 "| rule | first, ms | later, ms | difference, ms |", "|---|---|---|---|"]
+        text += [f"| `{rule}` | {side['first_ms']:.2f} | {side['later_ms']:.2f} | {side['first_ms'] - side['later_ms']:.2f} |"
+                 for rule, side in result["start"].items()]
     return text
 
 
