@@ -230,15 +230,31 @@ bool is_around(const Grid<N>& grid, const CurvedAxis& one, int a) {
   return any;
 }
 
-/// A length along an axis's own coordinate, in the direction in which that grows.
+/// The coordinate that a given period of axis `a` is along: longitudes whose name stands for this axis, or else its
+/// own, unless these are longitudes whose name stands for the axis of another one.
 template <int N>
-double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, double length) {
+int coordinate_of_period(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a) {
+  if (!detail::is_axis_curved(curved, a)) return a;
+  int found = a;
+  for (const CurvedAxis& one : curved) {
+    if (!is_longitude_unit(one.unit)) continue;
+    const int axis = axis_of_longitudes(grid, one);
+    if (axis == a) return one.axis;
+    if (one.axis == a) found = axis;
+  }
+  const auto is_found = [&](const CurvedAxis& one) { return one.axis == found && (one.along >> a & 1u) != 0; };
+  return std::ranges::any_of(curved, is_found) ? found : a;
+}
+
+/// A length along a coordinate, in the direction in which that grows along axis `a`.
+template <int N>
+double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, int coordinate, double length) {
   if (!std::isfinite(length) || length <= 0.0)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("the seam of axis {} has the period {}; expected a positive number", a, length));
   double growth = grid.axes[a].is_descending() ? -1.0 : 1.0;
   for (const CurvedAxis& one : curved)
-    if (one.axis == a && (one.along >> a & 1u) != 0) growth = mean_growth(grid, one, a);
+    if (one.axis == coordinate && (one.along >> a & 1u) != 0) growth = mean_growth(grid, one, a);
   return growth < 0.0 ? -length : length;
 }
 
@@ -297,7 +313,9 @@ template <int N>
 double span_of_region(const Grid<N>& grid, const CurvedAxis& one, int a) {
   constexpr double kLonger = 2.001;   // around an island in three steps, the last one may be twice the others
   constexpr double kRounding = 1e-3;  // degrees
-  const double back = std::abs(mean_growth(grid, one, a));
+  std::vector<double> growths = growths_of_rows(grid, one, a);
+  for (double& growth : growths) growth = std::abs(growth);  // on both sides of a pole, they grow in other directions
+  const double back = mean_of(growths);
   return back > kRounding && back > kLonger * mean_longest_step(grid, one, a) ? back : 0.0;  // 0 for NaN
 }
 
@@ -309,12 +327,23 @@ double turn_across(const Grid<N>& grid, const CurvedAxis& one, int a) {
   return std::abs(growth) >= 0.5 * detail::kTurn ? std::copysign(detail::kTurn, growth) : 0.0;  // 0 for NaN
 }
 
+/// Whether longitudes run around the globe along axis `a`, or farther: in half of the rows with known ends, with a step
+/// to the first ones of at most about the longest one. In the row in which a tripolar grid is folded they do not.
+template <int N>
+bool runs_around(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  constexpr double kLonger = 1.5;
+  const double longest = kLonger * mean_longest_step(grid, one, a);
+  const std::vector<double> growths = growths_of_rows(grid, one, a);
+  const auto is_turn = [&](double growth) { return detail::kTurn - std::abs(growth) <= longest; };
+  return !growths.empty() && 2 * std::ranges::count_if(growths, is_turn) >= std::ssize(growths);
+}
+
 /// Throws InvalidArgument for longitudes that end far from where they begin, as those of a region do: they neither run
 /// around the globe nor return to their places, as along an O-grid around an island.
 template <int N>
 void require_return(const Grid<N>& grid, const CurvedAxis& one, int a) {
   for (int b = 0; b < N; ++b)
-    if (b != a && (one.along >> b & 1u) != 0 && turn_across(grid, one, b) != 0.0) return;  // b runs around the globe
+    if (b != a && (one.along >> b & 1u) != 0 && runs_around(grid, one, b)) return;
   const double back = span_of_region(grid, one, a);
   if (back == 0.0) return;
   throw Error(
@@ -356,9 +385,10 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
         require_return(grid, one, a);
     }
     if (!is_given) continue;
-    seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
+    const int coordinate = coordinate_of_period(grid, curved, a);
+    seam.vector[coordinate] = along_axis(grid, curved, a, coordinate, periods[seams.size() - 1]);
     for (const CurvedAxis& one : curved)
-      if (one.axis == a) require_short_step(grid, one, a, seam.vector[a]);
+      if (one.axis == coordinate) require_short_step(grid, one, a, seam.vector[coordinate]);
   }
   return seams;
 }
