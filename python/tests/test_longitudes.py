@@ -34,12 +34,32 @@ def test_other_values_in_repeated_columns_of_a_turned_grid_are_errors():
             tegl.contour(turned(values, lat, lon), 12.3, periodic=periodic)
 
 
+def test_given_periods_of_turned_grids_are_along_longitudes():
+    expected = tegl.contour(turned(*globe(60)), 12.3, periodic="TLONG")
+    for columns in (60, 61):
+        found = tegl.contour(turned(*globe(columns)), 12.3, periodic={"TLONG": 360})
+        assert np.array_equal(found.periods, expected.periods)
+        assert np.array_equal(found.vertices, expected.vertices)
+
+
+def test_fine_axes_with_a_sample_less_do_not_span_the_globe():
+    lat = np.linspace(-80, 80, 9)
+    for columns in (1439, 1440):
+        lon = 0.25 * np.arange(columns)
+        values = np.cos(np.radians(lon)) * np.cos(np.radians(lat))[:, None]
+        found = tegl.contour(values, 0.5, periodic="auto", coords=[lat, lon], **GLOBE)
+        assert len(found.periods) == (columns == 1440)
+
+
 def test_slanted_regions_are_not_periodic():
     j, i = np.meshgrid(np.arange(12.0), np.arange(12.0), indexing="ij")
     lon, lat = -60 + 10 * i - 11 * j, 5 * j + 4 * i
     for periodic, span in (("lon", 110), (1, 110), (0, 121), ("all", "1[12][01]")):
         with pytest.raises(ValueError, match=f"longitudes.*span {span}"):
             tegl.contour(lat - 0.01 * lon, 45.0, curved={0: lat, 1: lon}, periodic=periodic, **GLOBE)
+    lon = -60 + 20 * i - 11 * j  # more than half of the globe along one axis
+    with pytest.raises(ValueError, match="longitudes.*span 121"):
+        tegl.contour(lat - 0.01 * lon, 45.0, curved={0: lat, 1: lon}, periodic=0, **GLOBE)
 
 
 def test_longitudes_of_a_moving_frame_have_their_period():

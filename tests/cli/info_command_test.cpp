@@ -90,6 +90,24 @@ TEST_F(Info, ShowsTheWorldMatrixInColumnsWhateverItsEntries) {
   EXPECT_EQ(run_tegl({"info", file, "--json"}).json()["world"]["linear"][2][0], 4.12774e-18) << "exact for programs";
 }
 
+TEST_F(Info, ShowsTheUnitOfTheWorldCoordinateThatDiffersAlongAnAxis) {
+  const auto info_of = [&](const std::string& directions) {
+    return write("turned.nrrd", nrrd_bytes(ball({7, 6, 5}, 2), "space dimension: 3\nspace directions: " + directions +
+                                                                   "\nspace units: \"mm\" \"km\" \"s\"\n"));
+  };
+  const std::string file = info_of("(0,0,1) (0,1,0) (1,0,0)");
+  const RunResult run = run_tegl({"info", file});
+  ASSERT_EQ(run.exit, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("7 samples, 0 .. 6 s"));
+  EXPECT_THAT(run.out, HasSubstr("6 samples, 0 .. 5 km"));
+  EXPECT_THAT(run.out, HasSubstr("5 samples, 0 .. 4 mm"));
+  EXPECT_EQ(run_tegl({"info", file, "--json"}).json()["axes"][0]["unit"], "s");
+  // along a slanted axis, coordinates of several units differ
+  const std::string slanted = run_tegl({"info", info_of("(1,0,1) (0,1,0) (0,0,1)")}).out;
+  EXPECT_THAT(slanted, HasSubstr("7 samples, 0 .. 8.48528, step 1.41421"));
+  EXPECT_THAT(slanted, HasSubstr("5 samples, 0 .. 4 s"));
+}
+
 TEST_F(Info, DescribesSavedContours) {
   const std::string image = write("balls.nii", nifti_bytes(merging_balls(9, 4), {2, 2, 3, 1.5f}));
   const RunResult made =

@@ -39,16 +39,17 @@ class Longitudes : public ProgramTest {
     EXPECT_THAT(run.err, HasSubstr(message));
   }
   /// Writes a spot around 180 degrees on a straight grid of 36 columns, of which `repeated` ones follow again.
-  [[nodiscard]] std::string write_globe(std::size_t repeated, float added = 0) const {
+  [[nodiscard]] std::string write_globe(std::size_t repeated, float added = 0, double first = -175.0,
+                                        double step = 10.0) const {
     OwnedImage<float, 2> image;
     image.grid = Grid<2>::unit({36 + repeated, 17});
-    image.grid.axes[0] = Axis::uniform(36 + repeated, -175.0, 10.0);
+    image.grid.axes[0] = Axis::uniform(36 + repeated, first, step);
     image.grid.axes[1] = Axis::uniform(17, -80.0, 10.0);
     image.grid.axes[0].name = "lon";
     image.grid.axes[0].unit = "degrees_east";
     for (std::size_t j = 0; j < 17; ++j)
       for (std::size_t i = 0; i < 36 + repeated; ++i) {
-        const double away = 180.0 - std::abs(image.grid.axes[0][i % 36]);
+        const double away = 180.0 - std::abs(std::remainder(image.grid.axes[0][i % 36], 360.0));
         image.values.push_back(static_cast<float>(40.0 - std::hypot(away, image.grid.axes[1][j])));
         if (i >= 36 && j == 2) image.values[image.values.size() - 1] += added;
       }
@@ -131,6 +132,60 @@ TEST_F(Longitudes, AttributesOnLatticesLeaveOutTheSameSamples) {
     const Mesh mesh = read_mesh(path("spot.vtkhdf"));
     ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
     for (const double value : mesh.vertex_attributes[0].values) EXPECT_NEAR(value, 0.0, 1e-4);
+  }
+}
+
+TEST_F(Longitudes, AttributesMayRepeatSamplesAndBeginElsewhere) {
+  for (const auto& [first, step] : {std::pair{-175.0, 10.0}, std::pair{5.0, 10.0}, std::pair{185.0, -10.0}})
+    for (const std::size_t repeated : {0, 1, 2}) {
+      SCOPED_TRACE(std::to_string(first) + " " + std::to_string(step) + " " + std::to_string(repeated));
+      const std::string other = path("other.nc");
+      std::filesystem::copy_file(write_globe(repeated, 0, first, step), other,
+                                 std::filesystem::copy_options::overwrite_existing);
+      const RunResult run = contour(write_globe(0), {"--periodic", "lon", "--attribute", other});
+      ASSERT_EQ(run.exit, 0) << run.err;
+      const Mesh mesh = read_mesh(path("spot.vtkhdf"));
+      ASSERT_EQ(mesh.vertex_attributes.size(), 1u);
+      ASSERT_FALSE(mesh.vertex_attributes[0].values.empty());
+      for (const double value : mesh.vertex_attributes[0].values) EXPECT_NEAR(value, 0.0, 1e-4);  // NaN is not near
+    }
+}
+
+TEST_F(Longitudes, InfoMentionsRepeatedSamples) {
+  const auto info = [&](const std::string& file) { return run_tegl({"info", file}).out; };
+  const auto json = [&](const std::string& file) { return run_tegl({"info", file, "--json"}).json(); };
+  const auto repeated = [](const char* axis, bool are_equal) {
+    return nlohmann::json::array(
+        {nlohmann::json::object({{"axis", axis}, {"samples", 2}, {"equal_values", are_equal}})});
+  };
+  std::string file = write_globe(0);
+  EXPECT_EQ(info(file).find("repeat"), std::string::npos);
+  EXPECT_EQ(json(file)["repeated"], nlohmann::json::array());
+  file = write_globe(1);
+  EXPECT_THAT(info(file), HasSubstr("the last sample along lon repeats the first one: --periodic lon leaves it out"));
+  EXPECT_THAT(info(file), HasSubstr("lon spans 360 degrees: --periodic auto continues"));
+  write_curved_globe(file, "TLONG", false, 2);
+  EXPECT_THAT(info(file), HasSubstr("the last 2 samples along i repeat the first ones: --periodic i leaves them out"));
+  EXPECT_EQ(json(file)["repeated"], repeated("i", true));
+  EXPECT_EQ(json(file)["periodic"], nlohmann::json::array({"i"}));
+  file = write_globe(2, 0.5F);
+  EXPECT_THAT(info(file), HasSubstr("the last 2 samples along lon are at the longitudes of the first, 360 degrees "
+                                    "further, with other values"));
+  EXPECT_EQ(json(file)["repeated"], repeated("lon", false));
+  EXPECT_EQ(json(file)["periodic"], nlohmann::json::array());
+}
+
+TEST_F(Longitudes, PeriodsOfThemAreGivenInBothOrdersOfDimensions) {
+  const std::string file = path("globe.nc");
+  for (const bool is_turned : {false, true}) {
+    write_curved_globe(file, "TLONG", is_turned);
+    ASSERT_EQ(contour(file, {"--periodic", "TLONG"}).exit, 0);
+    const std::string expected = file_bytes(path("spot.vtkhdf"));
+    for (const char* const given : {"TLONG=360", "longitude=360", "i=360"}) {
+      const RunResult run = contour(file, {"--periodic", given});
+      EXPECT_EQ(run.exit, 0) << run.err;
+      EXPECT_EQ(file_bytes(path("spot.vtkhdf")), expected) << given << " " << is_turned;
+    }
   }
 }
 

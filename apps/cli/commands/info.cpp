@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 #include "base/numbers.hpp"
 #include "base/progress.hpp"
@@ -35,6 +37,13 @@ constexpr std::size_t kJsonBins = 256;
 constexpr std::size_t kTextBins = 16;
 constexpr std::size_t kMostAxes = 5;
 
+/// Samples at the end of an axis that are at the longitudes of the first ones, 360 degrees further.
+struct RepeatedSamples {
+  std::string axis;
+  std::size_t count = 0;
+  bool have_equal_values = false;  ///< so that contours with a periodic axis leave them out
+};
+
 /// The contents of a report, independent of the image's type and dimension.
 struct Description {
   ImageInfo info;
@@ -42,21 +51,41 @@ struct Description {
   std::vector<Axis> axes;
   std::vector<std::vector<double>> linear;  ///< empty if there is no world map
   std::vector<double> offset;
-  std::vector<std::string> around;  ///< the axes of longitudes that span 360 degrees
+  std::vector<std::string> around;  ///< the axes of longitudes that span 360 degrees, without repeated samples
+  std::vector<RepeatedSamples> repeated;
   ValueStatistics values;
   double read_seconds = 0;
   double statistics_seconds = 0;
 };
 
+/// Whether samples that are a full turn from the first ones of an axis have their values.
+template <Value T, int N>
+bool have_equal_values(const Image<T, N>& image, const std::vector<CurvedAxis>& curved, int axis) {
+  try {
+    return without_repeated<T, N>(image, curved, std::array{axis}).left_out[static_cast<std::size_t>(axis)] > 0;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::InvalidArgument) throw;
+    return false;
+  }
+}
+
+template <Value T, int N>
+void describe_longitudes(const Image<T, N>& image, Description& description) {
+  const std::vector<CurvedAxis>& curved = description.info.curved;
+  const Grid<N>& grid = image.grid();
+  const auto label = [&](int axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    return axis_label(grid.axes[a].name, a);
+  };
+  for (const int axis : longitude_axes<T, N>(image, curved)) description.around.push_back(label(axis));
+  for (int axis = 0; axis < N; ++axis)
+    if (const std::size_t count = repeated_longitudes<N>(grid, curved, axis); count > 0)
+      description.repeated.push_back({label(axis), count, have_equal_values(image, curved, axis)});
+}
+
 template <int N>
 void describe_grid(const Grid<N>& grid, Description& description) {
   description.axes.assign(grid.axes.begin(), grid.axes.end());
-  if constexpr (N <= 4) {
-    for (const int axis : longitude_axes<N>(grid, description.info.curved)) {
-      const auto a = static_cast<std::size_t>(axis);
-      description.around.push_back(axis_label(grid.axes[a].name, a));
-    }
-  }
   if (!grid.has_world_map()) return;
   for (int row = 0; row < N; ++row) {
     description.linear.emplace_back();
@@ -78,11 +107,25 @@ std::string_view direction_name(const ImageInfo& info, std::size_t axis) {
   }
 }
 
+/// The unit of the coordinates along an axis: that of the world's coordinates that differ along it, which may be those
+/// of another axis; empty if these have several units.
+std::string unit_along(const Description& description, std::size_t at) {
+  if (description.linear.empty()) return description.axes[at].unit;
+  constexpr double kRounding = 1e-6;  // of the largest entry
+  double largest = 0.0;
+  for (const auto& row : description.linear) largest = std::max(largest, std::abs(row[at]));
+  std::vector<std::string> units;
+  for (std::size_t row = 0; row < description.linear.size(); ++row)
+    if (std::abs(description.linear[row][at]) > kRounding * largest) units.push_back(description.axes[row].unit);
+  const bool is_one = std::ranges::adjacent_find(units, std::not_equal_to<>()) == units.end();
+  return is_one && !units.empty() ? units.front() : std::string();
+}
+
 Json axis_json(const Description& description, std::size_t at) {
   const Axis& axis = description.axes[at];
   Json json;
   json["name"] = axis_label(axis.name, at);
-  json["unit"] = axis.unit;
+  json["unit"] = unit_along(description, at);
   const std::string_view direction = direction_name(description.info, at);
   json["direction"] = direction.empty() ? Json(nullptr) : Json(direction);
   json["size"] = axis.size();
@@ -135,6 +178,9 @@ Json to_json(const Description& description, const InputFiles& input) {
   Json& axes = json["axes"] = Json::array();
   for (std::size_t i = 0; i < description.axes.size(); ++i) axes.push_back(axis_json(description, i));
   json["periodic"] = description.around;
+  Json& repeated = json["repeated"] = Json::array();
+  for (const RepeatedSamples& one : description.repeated)
+    repeated.push_back({{"axis", one.axis}, {"samples", one.count}, {"equal_values", one.have_equal_values}});
   json["samples_are"] = info.samples_are_cells ? "cells" : "points";
   json["lattice"] = info.lattice ? name_of(*info.lattice) : "cubic";
   Json& curved = json["curved"] = Json::array();
@@ -151,7 +197,8 @@ Json to_json(const Description& description, const InputFiles& input) {
 
 std::string axis_text(const Description& description, std::size_t at) {
   const Axis& axis = description.axes[at];
-  const std::string unit = axis.unit.empty() ? "" : " " + axis.unit;
+  std::string unit = unit_along(description, at);
+  if (!unit.empty()) unit.insert(0, 1, ' ');
   const std::string_view direction = direction_name(description.info, at);
   std::string text =
       fmt::format("{:<6} {:>6} samples, {} .. {}{}{}", axis_label(axis.name, at), axis.size(), number(axis[0]),
@@ -262,6 +309,16 @@ std::string values_text(const Console& console, const Description& description) 
   return text;
 }
 
+std::string repeated_text(const RepeatedSamples& one) {
+  const std::string last = one.count == 1 ? "the last sample" : fmt::format("the last {} samples", one.count);
+  if (!one.have_equal_values)
+    return fmt::format("{} along {} {} at the longitudes of the first, 360 degrees further, with other values", last,
+                       one.axis, one.count == 1 ? "is" : "are");
+  return fmt::format("{} along {} {}: --periodic {} leaves {} out", last, one.axis,
+                     one.count == 1 ? "repeats the first one" : "repeat the first ones", one.axis,
+                     one.count == 1 ? "it" : "them");
+}
+
 std::string to_text(const Console& console, const Description& description, const std::string& file) {
   const ImageInfo& info = description.info;
   std::string text =
@@ -280,6 +337,7 @@ std::string to_text(const Console& console, const Description& description, cons
     text +=
         report_line("periodic", fmt::format("{} spans 360 degrees: --periodic auto continues across its ends", names));
   }
+  for (const RepeatedSamples& one : description.repeated) text += report_line("repeated", repeated_text(one));
   text += world_text(description);
   const ValueType stored = info.stored_type.value_or(description.value_type);
   text += report_line("type", stored == description.value_type
@@ -388,6 +446,7 @@ class InfoCommand final : public Command {
     const auto of_owned = [&]<Value T, int N>(const OwnedImage<T, N>& owned) {
       description.value_type = kValueType<T>;
       describe_grid(owned.grid, description);
+      if constexpr (N <= 4) describe_longitudes(owned.view(), description);
     };
     if (const auto* const in_5d = std::get_if<ReadImage5dResult>(&any))
       std::visit(of_owned, in_5d->image);

@@ -99,8 +99,7 @@ void refuse_repeated(const Grid<N>& grid, const std::vector<std::string>& period
   const NamedPeriods named = named_periods(grid, {}, periodic);
   for (std::size_t i = 0; i < named.axes.size(); ++i) {
     const int a = named.axes[i];
-    if ((!std::isnan(named.periods[i]) && named.periods[i] != 360.0) || repeated_longitudes<N>(grid, {}, a) == 0)
-      continue;
+    if (repeated_longitudes<N>(grid, {}, a, named.periods[i]) == 0) continue;
     const auto axis = static_cast<std::size_t>(a);
     throw Error(
         ErrorCode::InvalidArgument,

@@ -18,7 +18,6 @@
 #include "input/lattice_attributes.hpp"
 #include "input/mesh_input.hpp"
 #include "input/point_arrays.hpp"
-#include "input/repeated_image.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
@@ -182,7 +181,7 @@ CutSpace space_of_longer(const OwnedImage<T, N>& owned, const std::vector<std::s
     Axis& axis = grid.axes[a];
     // shorter periods are errors of the extraction
     is_longer[a] = periods[a] > std::abs(axis[axis.size() - 1] - axis[0]);
-    if (is_longer[a]) axis = with_repeated_sample(axis, periods[a]);
+    if (is_longer[a]) axis = longer_axis(axis, periods[a]);
   }
   CutSpace space = space_of(grid);
   std::vector<Period<N>> of_world;

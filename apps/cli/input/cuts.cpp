@@ -10,7 +10,6 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <type_traits>
 #include <utility>
 
 #include "base/numbers.hpp"
@@ -149,33 +148,35 @@ void find_levels(std::vector<Cut>& cuts, const CutSpace& space) {
   }
 }
 
-/// Whether all hyperplanes with this normal cut a wrapped contour, whatever their offsets.
-bool has_all_offsets(const CutSpace& space, const std::vector<double>& normal) {
-  const auto has_all = [&]<int N>(std::integral_constant<int, N>) {
-    Vector<N> components;
-    std::copy_n(normal.begin(), N, components.begin());
-    return cut_period<N>(periods_of_numbers<N>(space.periods), components).has_value();
-  };
-  switch (space.periods.empty() ? 0 : space.axes.size()) {
-    case 3:
-      return has_all(std::integral_constant<int, 3>());
-    case 4:
-      return has_all(std::integral_constant<int, 4>());
-    case 5:
-      return has_all(std::integral_constant<int, 5>());
-    default:
-      return false;
-  }
+/// Calls f with the periods of a wrapped contour, if there are any, in a space of 3 to 5 dimensions: contours in the
+/// plane are not cut. `numbers`: of `period_numbers`.
+template <class F>
+void visit_wrapped(const std::vector<double>& numbers, std::size_t dimension, const F& f) {
+  if (numbers.empty()) return;
+  if (dimension == 3) f(periods_of_numbers<3>(numbers));
+  if (dimension == 4) f(periods_of_numbers<4>(numbers));
+  if (dimension == 5) f(periods_of_numbers<5>(numbers));
 }
 
-template <int N>
+/// Whether all hyperplanes with this normal cut a wrapped contour, whatever their offsets.
+bool has_all_offsets(const CutSpace& space, const std::vector<double>& normal) {
+  bool has_all = false;
+  visit_wrapped(space.periods, space.axes.size(), [&]<int N>(const std::vector<Period<N>>& periods) {
+    Vector<N> components;
+    std::copy_n(normal.begin(), N, components.begin());
+    has_all = cut_period<N>(periods, components).has_value();
+  });
+  return has_all;
+}
+
 void wrap_axes(const std::vector<double>& numbers, CutSpace& space) {
-  const std::vector<Period<N>> periods = periods_of_numbers<N>(numbers);
-  for (int a = 0; a < N; ++a) {
-    CutAxis& axis = space.axes[static_cast<std::size_t>(a)];
-    axis = axis_with_periods(std::move(axis), a, periods);
-  }
-  space.periods = numbers;
+  visit_wrapped(numbers, space.axes.size(), [&]<int N>(const std::vector<Period<N>>& periods) {
+    for (int a = 0; a < N; ++a) {
+      CutAxis& axis = space.axes[static_cast<std::size_t>(a)];
+      axis = axis_with_periods(std::move(axis), a, periods);
+    }
+    space.periods = numbers;
+  });
 }
 
 std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::join(labels_of(space), ", ")); }
@@ -184,11 +185,8 @@ std::string axis_names(const CutSpace& space) { return fmt::format("{}", fmt::jo
 
 template <int N>
 CutAxis axis_with_periods(CutAxis axis, int a, const std::vector<Period<N>>& periods) {
-  std::array<double, 2> unrolled = {axis.first, axis.last};
-  for (const Period<N>& period : periods) {  // `unroll` moves simplices to the end of the period
-    const double part = period.vector[static_cast<std::size_t>(a)];
-    unrolled[part < 0.0 ? 0 : 1] += part;
-  }
+  const auto [down, up] = parts_of_periods<N>(periods, a);
+  const std::array<double, 2> unrolled = {axis.first + down, axis.last + up};  // `unroll` moves simplices there
   if (const std::optional<CutPeriod<N>> cuts = take_period<N>(axis, periods, a)) {
     axis.first = cuts->first;
     axis.last = cuts->first + cuts->length;
@@ -304,9 +302,7 @@ CutSpace space_of(const Mesh& mesh) {
     }
     axis.is_longitude = a < mesh.axis_units.size() && is_longitude_unit(mesh.axis_units[a]);
   }
-  if (n == 3) wrap_axes<3>(mesh.periods, space);
-  if (n == 4) wrap_axes<4>(mesh.periods, space);
-  if (n == 5) wrap_axes<5>(mesh.periods, space);
+  wrap_axes(mesh.periods, space);
   return space;
 }
 

@@ -59,6 +59,17 @@ struct CutAxis {
   std::array<double, 2> unrolled = {};
 };
 
+/// The sums of the parts of periods along an axis that lead down, and of those that lead up.
+template <int N>
+std::array<double, 2> parts_of_periods(std::span<const Period<N>> periods, int a) {
+  std::array<double, 2> sums = {};
+  for (const Period<N>& period : periods) {
+    const double part = period.vector[static_cast<std::size_t>(a)];
+    sums[part < 0.0 ? 0 : 1] += part;
+  }
+  return sums;
+}
+
 /// Makes an axis periodic, from its first place on, if every place across it has a cut (`cut_period`). Returns how cuts
 /// repeat then. The unrolled contour ends where the axis ended, or all periods from its start. N is 2 to 5; axes of 2D
 /// contours are not cut.
@@ -67,12 +78,8 @@ std::optional<CutPeriod<N>> take_period(CutAxis& axis, std::span<const Period<N>
   if constexpr (N >= 3) {
     const std::optional<CutPeriod<N>> cuts = cut_period<N>(periods, unit_vector<N>(a));
     if (!cuts) return cuts;
-    double down = axis.last, up = axis.first;
-    for (const Period<N>& period : periods) {
-      const double part = period.vector[static_cast<std::size_t>(a)];
-      (part < 0.0 ? down : up) += part;
-    }
-    axis.unrolled = {std::min(axis.first, down), std::max(axis.last, up)};
+    const auto [down, up] = parts_of_periods<N>(periods, a);
+    axis.unrolled = {std::min(axis.first, axis.last + down), std::max(axis.last, axis.first + up)};
     axis.period = cuts->length;
     axis.last = axis.first + axis.period;
     axis.is_moved = !cuts->is_straight;

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -66,13 +67,14 @@ requires DimensionBetween<N, 2, 5>
 /// The seams of these axes. Vectors are 360 for coordinates with a unit of degrees_east (or another as in
 /// `longitude_periods`) that grow by 180 degrees or more along the axis, in the mean of all rows, and the periods of
 /// `default_periods` for axes that are not curved; otherwise 0. `periods`, if any, has a number for each of the axes:
-/// the length of the seam along the axis's own coordinate, in the direction in which that grows, or NaN for the vector
-/// above. Errors: InvalidGrid (as `extract_curved`, and an axis that the grid does not have); InvalidArgument (as
-/// `default_periods`; another number of periods; one not positive and finite, or not more than twice the mean step
-/// across the seam, as in another unit; coordinates that grow by the period or more, in the mean of all rows or in most
-/// of them; without a given period, longitudes of a region: the way back to the places of the first samples is more
-/// than twice as long as the longest step along the axis, in the mean of all rows, and longitudes do not grow by 180
-/// degrees or more along another axis).
+/// the length of the seam along the axis's own coordinate, or along longitudes whose name stands for the axis
+/// (`axis_of_longitudes`), in the direction in which that grows, or NaN for the vector above. Errors: InvalidGrid (as
+/// `extract_curved`, and an axis that the grid does not have); InvalidArgument (as `default_periods`; another number of
+/// periods; one not positive and finite, or not more than twice the mean step across the seam, as in another unit;
+/// coordinates that grow by the period or more, in the mean of all rows or in most of them; without a given period,
+/// longitudes of a region: the way back to the places of the first samples is more than twice as long as the longest
+/// step along the axis, in the mean of all rows, and longitudes do not run around the globe along another axis: in half
+/// of the rows, their ends are at most 1.5 of the longest steps apart).
 template <int N>
 requires DimensionBetween<N, 2, 4>
 [[nodiscard]] std::vector<CurvedSeam<N>> find_seams(const Grid<N>& grid, std::span<const CurvedAxis> curved,
@@ -82,11 +84,13 @@ requires DimensionBetween<N, 2, 4>
 /// grids: longitudes (by the unit, of the axis or of curved coordinates) 360 degrees from those of the first samples,
 /// to a thousandth of a step, and other curved coordinates equal to theirs, to 2^-22 of the largest; unknown where
 /// theirs are. Rows of curved longitudes may also return to their first ones, as where a tripolar grid is folded,
-/// except one at least. 0 if there are none, or fewer than three others. Values are not compared. Errors: InvalidGrid
-/// (as `extract_curved`; in 5D any curved axis; an axis that the grid does not have). O(coordinates) time.
+/// except one at least. 0 if there are none, or fewer than three others. `period`: a given one, in the axis's unit; if
+/// it is not 360 degrees in the world, to 1e-9 of it, also 0. Values are not compared. Errors: InvalidGrid (as
+/// `extract_curved`; in 5D any curved axis; an axis that the grid does not have). O(coordinates) time.
 template <int N>
 requires DimensionBetween<N, 2, 5>
-[[nodiscard]] std::size_t repeated_longitudes(const Grid<N>& grid, std::span<const CurvedAxis> curved, int axis);
+[[nodiscard]] std::size_t repeated_longitudes(const Grid<N>& grid, std::span<const CurvedAxis> curved, int axis,
+                                              double period = std::numeric_limits<double>::quiet_NaN());
 
 /// An image, on a curved grid or not, of which samples at the ends of axes are left out.
 template <Value T, int N>
@@ -98,11 +102,10 @@ struct WithoutRepeated {
 };
 
 /// Leaves out the samples that `repeated_longitudes` counts along these axes, so that the axes can be periodic.
-/// `periods`, if any, has a number for each of the axes: a given period in the axis's unit, or NaN; with another one
-/// than 360 degrees, samples remain. Values are not copied, coordinates are. Errors: as `repeated_longitudes`;
-/// InvalidArgument for samples with other values than those that they repeat, of which it names the first in memory
-/// (missing equals missing; floating-point values may differ by 1e-12 of the largest one among these samples, float by
-/// 1e-6, as values of a formula do). O(coordinates) time.
+/// `periods`, if any, has a number for each of the axes: a given period in the axis's unit, or NaN. Values are not
+/// copied, coordinates are. Errors: as `repeated_longitudes`; InvalidArgument for samples with other values than those
+/// that they repeat, of which it names the first in memory (missing equals missing; floating-point values may differ by
+/// 1e-12 of the largest one among these samples, float by 1e-6, as values of a formula do). O(coordinates) time.
 template <Value T, int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] WithoutRepeated<T, N> without_repeated(const Image<T, N>& image, std::span<const CurvedAxis> curved,

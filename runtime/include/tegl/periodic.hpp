@@ -30,11 +30,25 @@ requires DimensionBetween<N, 2, 5>
 [[nodiscard]] bool is_longitude_unit(std::string_view unit) noexcept;
 
 /// The periods of longitudes: 360 for each even axis with a unit of longitudes (`is_longitude_unit`) whose samples span
-/// 360 degrees without repeating the first one; 0 for the others, and for axes that the world map mixes with others. If
+/// 360 degrees without repeating the first one, to less than half a step; 0 for the others, and for axes that the world
+/// map mixes with others. If
 /// the world map scales the axis, longitudes are those of the world, and the period is 360 there.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] AxisPeriods<N> longitude_periods(const Grid<N>& grid);
+
+/// How many periods x is from the origin, along the period's vector: in a wrapped contour, from Period::start on.
+template <int N>
+[[nodiscard]] double share_of(const Period<N>& period,
+                              const std::type_identity_t<std::array<double, static_cast<std::size_t>(N)>>& x) noexcept {
+  double share = 0.0;
+  for (int a = 0; a < N; ++a) share += period.dual[a] * x[a];
+  return share;
+}
+
+/// A periodic axis with its first sample repeated at the end, one period further, in the direction of the axis.
+/// Uniform if the axis is and its step leads there.
+[[nodiscard]] Axis longer_axis(const Axis& axis, double period);
 
 /// Periods as numbers, as files store them: for each `vector`, `dual` and `start`.
 template <int N>

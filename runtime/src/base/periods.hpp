@@ -12,19 +12,13 @@
 
 #include "tegl/contour.hpp"
 #include "tegl/error.hpp"
+#include "tegl/periodic.hpp"
 
 namespace tegl::detail {
 
 /// A point whose dimension is not deduced: that of an array has another type.
 template <int N, class Real = double>
 using PlainPoint = std::type_identity_t<std::array<Real, static_cast<std::size_t>(N)>>;
-
-template <int N>
-double share_of(const Period<N>& period, const PlainPoint<N>& x) noexcept {
-  double share = 0.0;
-  for (int a = 0; a < N; ++a) share += period.dual[a] * x[a];
-  return share;
-}
 
 /// Adds a multiple of the period's vector.
 template <int N>

@@ -185,16 +185,25 @@ requires DimensionBetween<N, 2, 4> AxisPeriods<N> index_periods(const Grid<N>& g
 
 namespace {
 
-/// The last coordinate along axis `a` less the first one, of each row in which both are known.
+/// The turns in a step between neighbours. Beside a pole within the grid, longitudes begin again along a line: there,
+/// neighbours are about a turn apart. 0 for unknown ones.
+double turns_of_step(double step) { return std::isfinite(step) ? std::nearbyint(step / detail::kTurn) : 0.0; }
+
+/// The last coordinate along axis `a` less the first one, of each row in which both are known; of longitudes without
+/// the turns of single steps.
 template <int N>
 std::vector<double> growths_of_rows(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  const bool is_longitude = is_longitude_unit(one.unit);
   const std::size_t row = detail::size_along(one, grid, 0, a), block = row * grid.axes[a].size();
   std::vector<double> growths;
   growths.reserve(one.size() / grid.axes[a].size());
   for (std::size_t first = 0; first < one.size(); first += block)
     for (std::size_t i = 0; i < row; ++i) {
-      const double growth = one[first + block - row + i] - one[first + i];
-      if (std::isfinite(growth)) growths.push_back(growth);
+      double growth = one[first + block - row + i] - one[first + i];
+      if (!std::isfinite(growth)) continue;
+      for (std::size_t at = first + i; is_longitude && at + row < first + block; at += row)
+        growth -= detail::kTurn * turns_of_step(one[at + row] - one[at]);
+      growths.push_back(growth);
     }
   return growths;
 }
@@ -230,15 +239,31 @@ bool is_around(const Grid<N>& grid, const CurvedAxis& one, int a) {
   return any;
 }
 
-/// A length along an axis's own coordinate, in the direction in which that grows.
+/// The coordinate that a given period of axis `a` is along: longitudes whose name stands for this axis, or else its
+/// own, unless these are longitudes whose name stands for the axis of another one.
 template <int N>
-double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, double length) {
+int coordinate_of_period(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a) {
+  if (!detail::is_axis_curved(curved, a)) return a;
+  int found = a;
+  for (const CurvedAxis& one : curved) {
+    if (!is_longitude_unit(one.unit)) continue;
+    const int axis = axis_of_longitudes(grid, one);
+    if (axis == a) return one.axis;
+    if (one.axis == a) found = axis;
+  }
+  const auto is_found = [&](const CurvedAxis& one) { return one.axis == found && (one.along >> a & 1u) != 0; };
+  return std::ranges::any_of(curved, is_found) ? found : a;
+}
+
+/// A length along a coordinate, in the direction in which that grows along axis `a`.
+template <int N>
+double along_axis(const Grid<N>& grid, std::span<const CurvedAxis> curved, int a, int coordinate, double length) {
   if (!std::isfinite(length) || length <= 0.0)
     throw Error(ErrorCode::InvalidArgument,
                 fmt::format("the seam of axis {} has the period {}; expected a positive number", a, length));
   double growth = grid.axes[a].is_descending() ? -1.0 : 1.0;
   for (const CurvedAxis& one : curved)
-    if (one.axis == a && (one.along >> a & 1u) != 0) growth = mean_growth(grid, one, a);
+    if (one.axis == coordinate && (one.along >> a & 1u) != 0) growth = mean_growth(grid, one, a);
   return growth < 0.0 ? -length : length;
 }
 
@@ -275,7 +300,7 @@ void require_short_step(const Grid<N>& grid, const CurvedAxis& one, int a, doubl
                                   std::abs(step)));
 }
 
-/// The mean over all rows of the longest step along axis `a`; 0 if none is known.
+/// The mean over all rows of the longest step along axis `a`, in longitudes without turns; 0 if none is known.
 template <int N>
 double mean_longest_step(const Grid<N>& grid, const CurvedAxis& one, int a) {
   const std::size_t row = detail::size_along(one, grid, 0, a), block = row * grid.axes[a].size();
@@ -283,21 +308,22 @@ double mean_longest_step(const Grid<N>& grid, const CurvedAxis& one, int a) {
   for (std::size_t first = 0; first < one.size(); first += block)
     for (std::size_t i = 0; i < row; ++i) {
       double longest = 0.0;
-      for (std::size_t at = first + i; at + row < first + block; at += row)
-        longest = std::fmax(longest, std::abs(one[at + row] - one[at]));  // ignores NaN
+      for (std::size_t at = first + i; at + row < first + block; at += row) {
+        const double step = one[at + row] - one[at];
+        longest = std::fmax(longest, std::abs(step - detail::kTurn * turns_of_step(step)));  // ignores NaN
+      }
       if (longest > 0.0) ++count;
       sum += longest;
     }
   return count > 0.0 ? sum / count : 0.0;
 }
 
-/// How far longitudes end from where they begin along axis `a`, in the mean of all rows; 0 if they return there, as
-/// along an O-grid around an island: if the way back is at most about twice as long as the longest step.
+/// `back`, how far longitudes end from where they begin along axis `a`; 0 if they return there, as along an O-grid
+/// around an island: if the way back is at most about twice as long as the longest step, in the mean of all rows.
 template <int N>
-double span_of_region(const Grid<N>& grid, const CurvedAxis& one, int a) {
+double span_of_region(const Grid<N>& grid, const CurvedAxis& one, int a, double back) {
   constexpr double kLonger = 2.001;   // around an island in three steps, the last one may be twice the others
   constexpr double kRounding = 1e-3;  // degrees
-  const double back = std::abs(mean_growth(grid, one, a));
   return back > kRounding && back > kLonger * mean_longest_step(grid, one, a) ? back : 0.0;  // 0 for NaN
 }
 
@@ -309,13 +335,26 @@ double turn_across(const Grid<N>& grid, const CurvedAxis& one, int a) {
   return std::abs(growth) >= 0.5 * detail::kTurn ? std::copysign(detail::kTurn, growth) : 0.0;  // 0 for NaN
 }
 
+/// Whether longitudes run around the globe along axis `a`, or farther: in half of the rows with known ends, with a step
+/// to the first ones of at most about the longest one. In the row in which a tripolar grid is folded they do not.
+template <int N>
+bool runs_around(const Grid<N>& grid, const CurvedAxis& one, int a) {
+  constexpr double kLonger = 1.5;
+  const double longest = kLonger * mean_longest_step(grid, one, a);
+  const std::vector<double> growths = growths_of_rows(grid, one, a);
+  const auto is_turn = [&](double growth) { return detail::kTurn - std::abs(growth) <= longest; };
+  return !growths.empty() && 2 * std::ranges::count_if(growths, is_turn) >= std::ssize(growths);
+}
+
 /// Throws InvalidArgument for longitudes that end far from where they begin, as those of a region do: they neither run
 /// around the globe nor return to their places, as along an O-grid around an island.
 template <int N>
 void require_return(const Grid<N>& grid, const CurvedAxis& one, int a) {
   for (int b = 0; b < N; ++b)
-    if (b != a && (one.along >> b & 1u) != 0 && turn_across(grid, one, b) != 0.0) return;  // b runs around the globe
-  const double back = span_of_region(grid, one, a);
+    if (b != a && (one.along >> b & 1u) != 0 && runs_around(grid, one, b)) return;
+  std::vector<double> growths = growths_of_rows(grid, one, a);
+  for (double& growth : growths) growth = std::abs(growth);  // on both sides of a pole, they grow in other directions
+  const double back = span_of_region(grid, one, a, mean_of(growths));
   if (back == 0.0) return;
   throw Error(
       ErrorCode::InvalidArgument,
@@ -356,9 +395,10 @@ requires DimensionBetween<N, 2, 4> std::vector<CurvedSeam<N>> find_seams(const G
         require_return(grid, one, a);
     }
     if (!is_given) continue;
-    seam.vector[a] = along_axis(grid, curved, a, periods[seams.size() - 1]);
+    const int coordinate = coordinate_of_period(grid, curved, a);
+    seam.vector[coordinate] = along_axis(grid, curved, a, coordinate, periods[seams.size() - 1]);
     for (const CurvedAxis& one : curved)
-      if (one.axis == a) require_short_step(grid, one, a, seam.vector[a]);
+      if (one.axis == coordinate) require_short_step(grid, one, a, seam.vector[coordinate]);
   }
   return seams;
 }
@@ -372,11 +412,15 @@ int axis_of_longitudes(const Grid<N>& grid, const CurvedAxis& longitudes) {
   if (!is_longitude_unit(longitudes.unit)) return longitudes.axis;
   std::vector<int> around;
   int longest = longitudes.axis;
-  double most = kMore * span_of_region(grid, longitudes, longest);
+  // from the centre of an O-grid, they grow in all directions, so their mean counts
+  const auto span_along = [&](int a) {
+    return span_of_region(grid, longitudes, a, std::abs(mean_growth(grid, longitudes, a)));
+  };
+  double most = kMore * span_along(longest);
   for (int a = 0; a < N; ++a) {
     if ((longitudes.along >> a & 1u) == 0) continue;
     if (is_around(grid, longitudes, a) || repeated_longitudes<N>(grid, one, a) > 0) around.push_back(a);
-    const double span = span_of_region(grid, longitudes, a);
+    const double span = span_along(a);
     if (a == longitudes.axis || !(span > most)) continue;
     longest = a;
     most = span;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,6 +28,8 @@ namespace {
 using detail::kTurn;
 /// Of a coordinate: the rounding of single precision, in which files may have coordinates.
 constexpr double kSingleRounding = 0x1p-22;
+/// Of a period's product with the scale of the world map.
+constexpr double kProductRounding = 1e-9;
 
 template <int N>
 using SampleIndex = std::type_identity_t<std::array<std::size_t, N>>;  // N is deduced from the image
@@ -216,10 +219,11 @@ void leave_out(std::vector<CurvedAxis>& curved, const Grid<N>& grid, int axis, s
   for (std::size_t i = 0; i < of_points.size(); ++i) curved[of_points[i]] = std::move(side_by_side[i]);
 }
 
-/// Leaves out what an axis repeats, if `has_equal_values(image, axis, count)`.
+/// Leaves out what an axis repeats, if `has_equal_values(image, axis, count)`. `period`: a given one, or NaN.
 template <Value T, int N, class HasEqualValues>
-void leave_out_repeated(WithoutRepeated<T, N>& result, int axis, const HasEqualValues& has_equal_values) {
-  const std::size_t count = repeated_longitudes<N>(result.image.grid(), result.curved, axis);
+void leave_out_repeated(WithoutRepeated<T, N>& result, int axis, double period,
+                        const HasEqualValues& has_equal_values) {
+  const std::size_t count = repeated_longitudes<N>(result.image.grid(), result.curved, axis, period);
   if (count == 0 || !has_equal_values(result.image, axis, count)) return;
   leave_out(result.curved, result.image.grid(), axis, count);
   result.image = result.image.part(axis, 0, result.image.size(axis) - count);
@@ -230,7 +234,8 @@ void leave_out_repeated(WithoutRepeated<T, N>& result, int axis, const HasEqualV
 
 template <int N>
 requires DimensionBetween<N, 2, 5> std::size_t repeated_longitudes(const Grid<N>& grid,
-                                                                   std::span<const CurvedAxis> curved, int axis) {
+                                                                   std::span<const CurvedAxis> curved, int axis,
+                                                                   double given) {
   if (axis < 0 || axis >= N)
     throw Error(ErrorCode::InvalidGrid, fmt::format("longitudes along axis {}; expected 0 to {}", axis, N - 1));
   if constexpr (N == 5) {
@@ -238,6 +243,8 @@ requires DimensionBetween<N, 2, 5> std::size_t repeated_longitudes(const Grid<N>
   } else {
     if (!curved.empty()) detail::require_curved<N>(grid, curved);
   }
+  if (!std::isnan(given) && !(std::abs(std::abs(given * grid.linear[axis][axis]) - kTurn) <= kProductRounding * kTurn))
+    return 0;
   const std::size_t size = grid.axes[axis].size(), period = period_in_samples(grid, curved, axis);
   if (period < 3 || period >= size) return 0;  // fewer samples are no periodic axis
   for (const CurvedAxis& one : curved)
@@ -252,11 +259,8 @@ requires DimensionBetween<N, 2, 5> WithoutRepeated<T, N> without_repeated(const 
                                                                           std::span<const double> periods) {
   WithoutRepeated<T, N> result{image, {curved.begin(), curved.end()}};
   for (std::size_t i = 0; i < axes.size(); ++i) {
-    const int axis = axes[i];
-    const bool has_other_period = i < periods.size() && !std::isnan(periods[i]) && axis >= 0 && axis < N &&
-                                  std::abs(periods[i] * image.grid().linear[axis][axis]) != kTurn;
-    if (has_other_period) continue;
-    leave_out_repeated(result, axis, [](const Image<T, N>& whole, int along, std::size_t count) {
+    const double period = i < periods.size() ? periods[i] : std::numeric_limits<double>::quiet_NaN();
+    leave_out_repeated(result, axes[i], period, [](const Image<T, N>& whole, int along, std::size_t count) {
       const auto other = first_other_value(whole, along, count);
       if (other) refuse_other_value(whole, along, count, *other);
       return true;
@@ -273,14 +277,14 @@ requires DimensionBetween<N, 2, 5> std::vector<int> longitude_axes(const Image<T
   if (!is_longer) return longitude_axes<N>(image.grid(), curved);
   WithoutRepeated<T, N> result{image, {curved.begin(), curved.end()}};
   for (int axis = 0; axis < N; ++axis)
-    leave_out_repeated(result, axis, [](const Image<T, N>& whole, int along, std::size_t count) {
-      return !first_other_value(whole, along, count);
-    });
+    leave_out_repeated(
+        result, axis, std::numeric_limits<double>::quiet_NaN(),
+        [](const Image<T, N>& whole, int along, std::size_t count) { return !first_other_value(whole, along, count); });
   return longitude_axes<N>(result.image.grid(), result.curved);
 }
 
 #define TEGL_INSTANTIATE_GRIDS(N) \
-  template std::size_t repeated_longitudes<N>(const Grid<N>&, std::span<const CurvedAxis>, int);
+  template std::size_t repeated_longitudes<N>(const Grid<N>&, std::span<const CurvedAxis>, int, double);
 TEGL_INSTANTIATE_GRIDS(2)
 TEGL_INSTANTIATE_GRIDS(3)
 TEGL_INSTANTIATE_GRIDS(4)

@@ -17,6 +17,7 @@
 #include <Eigen/LU>
 
 #include "base/periods.hpp"
+#include "periodic/periodic_layers.hpp"
 #include "tegl/eigen.hpp"
 #include "tegl/error.hpp"
 #include "tegl/stream.hpp"
@@ -50,8 +51,9 @@ bool is_longitude(const Axis& axis) {
   const double step = (axis[axis.size() - 1] - axis[0]) / static_cast<double>(axis.size() - 1);
   for (std::size_t i = 1; i < axis.size(); ++i)
     if (std::abs(axis[i] - axis[i - 1] - step) > kTolerance * std::abs(step)) return false;
-  return std::abs(std::abs(step) * static_cast<double>(axis.size()) - detail::kTurn) <=
-         kTolerance * static_cast<double>(axis.size()) * std::abs(step);
+  const double count = static_cast<double>(axis.size());
+  // At half a step and more, a sample would be missing or repeated. On fine axes this is less than the tolerance.
+  return std::abs(std::abs(step) * count - detail::kTurn) < std::min(kTolerance * count, 0.5) * std::abs(step);
 }
 
 }  // namespace
@@ -86,6 +88,8 @@ bool is_longitude_unit(std::string_view unit) noexcept {
                                                       "degrees_E",    "degreeE",     "degreesE"};
   return std::find(kUnits.begin(), kUnits.end(), unit) != kUnits.end();
 }
+
+Axis longer_axis(const Axis& axis, double period) { return detail::wrapped_axis(axis, period, 0, 1); }
 
 namespace detail {
 

@@ -35,7 +35,7 @@ std::array<Moved<N>, N> moved_corners(const Contour<N, Real>& contour,
   for (int j = 0; j < N; ++j) moved[j].vertex = simplex[j];
   for (std::size_t p = 0; p < contour.periods.size(); ++p) {
     const auto share = [&](int j) {
-      return detail::share_of(contour.periods[p], detail::widened_point<N>(contour.vertices[simplex[j]]));
+      return share_of(contour.periods[p], detail::widened_point<N>(contour.vertices[simplex[j]]));
     };
     int least = 0;
     for (int j = 0; j < N; ++j) {

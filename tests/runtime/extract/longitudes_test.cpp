@@ -55,6 +55,16 @@ TEST(Longitudes, OfAnAffineMapHaveTheirPeriodInTheWorld) {
                [&] { (void)default_periods(affine_grid(350, 0.5), axes); });
 }
 
+TEST(Longitudes, OfFineAxesWithASampleMoreOrLessDoNotSpanTheGlobe) {
+  for (const double step : {0.25, -0.25}) {  // a thousandth of all steps is more than one
+    EXPECT_EQ(longitude_axes(affine_grid(1440, step)), std::vector<int>{0});
+    for (const std::size_t columns : {1439U, 1441U, 1442U})
+      EXPECT_EQ(longitude_axes(affine_grid(columns, step)), std::vector<int>{}) << columns;
+  }
+  EXPECT_EQ(longitude_axes(affine_grid(4320, 0.08333)), std::vector<int>{0});  // rounded
+  EXPECT_EQ(longitude_axes(affine_grid(4320, 0.0834)), std::vector<int>{});    // 360.2 from the first to the last one
+}
+
 TEST(Longitudes, MixedWithOtherAxesHaveNoDefaultPeriod) {
   Grid<2> grid = affine_grid(300, 1.2);
   const auto refuses = [&](const char* text) {
@@ -181,6 +191,23 @@ TEST(Longitudes, SamplesWithOtherValuesOrCoordinatesAreNotLeftOut) {
   }
 }
 
+TEST(Longitudes, ThatRepeatBeforeAMapAreLeftOutForARoundedPeriodOf360) {
+  const double step = 360.0 / 78;
+  ASSERT_NE(78 * step, 360.0);
+  OwnedImage<float, 2> image;
+  image.grid = affine_grid(79, step);
+  image.values.resize(79 * 5);
+  const auto left_out = [&](double period) {
+    return without_repeated<float, 2>(image.view(), {}, std::array{0}, std::array{period}).left_out[0];
+  };
+  EXPECT_EQ(left_out(78.0), 1u);
+  EXPECT_EQ(left_out(kNaN), 1u);
+  EXPECT_EQ(left_out(78.001), 0u);
+  EXPECT_EQ(left_out(360.0), 0u);  // in the coordinates before the map
+  EXPECT_EQ(repeated_longitudes<2>(image.grid, {}, 0, 78.0), 1u);
+  EXPECT_EQ(repeated_longitudes<2>(image.grid, {}, 0, 79.0), 0u);
+}
+
 TEST(Longitudes, RepeatedLatitudesMayDifferByRounding) {
   Globe longer = globe(1, true);
   for (std::size_t s = 0; s < longer.image.values.size(); ++s) {
@@ -248,6 +275,57 @@ TEST(Longitudes, OfASlantedRegionAreErrors) {
   for (const auto& [axis, text] : {std::pair{0, "span 110"}, std::pair{1, "span 121"}})
     expect_error(ErrorCode::InvalidArgument, text, [&] { (void)find_seams(grid, curved, std::array{axis}); });
   EXPECT_EQ(axis_of_longitudes(grid, curved[0]), 0);  // by far the most along neither axis
+}
+
+TEST(Longitudes, OfASlantedRegionWiderThanHalfTheGlobeAreErrors) {
+  Grid<2> grid = Grid<2>::unit({50, 30});
+  std::vector<CurvedAxis> curved = {{0, 3, {}, "lon", "degrees_east"}, {1, 3, {}, "lat", "degrees_north"}};
+  const auto refuses = [&](double along_0, double along_1, int axis, const char* text) {
+    curved[0].values.clear();
+    curved[1].values.clear();
+    for (int j = 0; j < 30; ++j)
+      for (int i = 0; i < 50; ++i) {
+        curved[0].values.push_back(-100.0 + along_0 * i + along_1 * j);
+        curved[1].values.push_back(-60.0 + 1.5 * j + i);
+      }
+    expect_error(ErrorCode::InvalidArgument, text, [&] { (void)find_seams(grid, curved, std::array{axis}); });
+    EXPECT_EQ(find_seams(grid, curved, std::array{1 - axis})[0].vector[0], 360.0);
+  };
+  refuses(4.5, 3.0, 1, "the longitudes along axis 1 (y), a curved axis, span 87, in the mean of all rows");
+  refuses(1.0, 7.5, 0, "the longitudes along axis 0 (x), a curved axis, span 49, in the mean of all rows");
+}
+
+TEST(Longitudes, AroundAPoleWithinTheGridAreErrors) {  // they grow on one of its sides and decrease on the other
+  Grid<2> grid = Grid<2>::unit({40, 40});
+  std::vector<CurvedAxis> curved = {{0, 3, {}, "lon", "degrees_east"}, {1, 3, {}, "lat", "degrees_north"}};
+  for (int j = 0; j < 40; ++j)
+    for (int i = 0; i < 40; ++i) {
+      const double x = i - 19.5, y = j - 19.5;
+      curved[0].values.push_back(std::atan2(y, x) * 180 / std::numbers::pi);
+      curved[1].values.push_back(90.0 - std::hypot(x, y));
+    }
+  continue_longitudes(curved[0].values, grid.sizes());
+  for (const int axis : {0, 1})
+    expect_error(ErrorCode::InvalidArgument, "so they neither run around the globe nor return to the first ones",
+                 [&] { (void)find_seams(grid, curved, std::array{axis}); });
+}
+
+TEST(Longitudes, GivenPeriodsAreAlongTheCoordinateWhoseNameStandsForTheAxis) {
+  const Globe plain = globe(0, true);
+  Grid<2> grid = Grid<2>::unit({17, 36});
+  std::vector<CurvedAxis> turned = plain.curved;  // with the order of axes of other files
+  for (std::size_t c = 0; c < 2; ++c)
+    for (std::size_t i = 0; i < 36; ++i)
+      for (std::size_t j = 0; j < 17; ++j) turned[c].values[i * 17 + j] = plain.curved[c].values[j * 36 + i];
+  for (const double period : {360.0, 400.0}) {
+    EXPECT_EQ(find_seams(grid, turned, std::array{1}, std::array{period})[0].vector, (Vector<2>{period, 0.0}));
+    EXPECT_EQ(find_seams(plain.image.grid, plain.curved, std::array{0}, std::array{period})[0].vector,
+              (Vector<2>{period, 0.0}));
+  }
+  EXPECT_EQ(find_seams(grid, turned, std::array{0}, std::array{170.0})[0].vector, (Vector<2>{0.0, 170.0}));
+  turned[0].unit = "m";  // no longitudes: each along its own axis
+  expect_error(ErrorCode::InvalidArgument, "the step across the seam is",
+               [&] { (void)find_seams(grid, turned, std::array{1}, std::array{360.0}); });
 }
 
 TEST(Longitudes, StandForTheAxisAlongWhichTheyGrow) {
