@@ -141,7 +141,7 @@ class TrackCommand final : public ContourInputCommand {
     graph = selected(std::move(graph));
     const double track_seconds = watch.lap();
     // write
-    write(input, graph, bar);
+    write(input, graph, all, bar);
     const double write_seconds = watch.lap();
     // report
     bar.clear();
@@ -213,7 +213,8 @@ class TrackCommand final : public ContourInputCommand {
     return select_tracks(graph, keep);
   }
 
-  void write(ContourInput& input, const TrackGraph& graph, ProgressBar& bar) {
+  /// `all`: the number of tracks before a choice.
+  void write(ContourInput& input, const TrackGraph& graph, std::size_t all, ProgressBar& bar) {
     // graph files, and contours with labels
     WrittenFiles written;
     for (const std::string& output : outputs_) {
@@ -229,7 +230,9 @@ class TrackCommand final : public ContourInputCommand {
         lost_ += lost;
       };
       if (is_track_file(output))
-        written.write(output, [&](const PendingPath& file) { write_track(graph, file, {.title = title(input)}); });
+        written.write(output, [&](const PendingPath& file) {
+          write_track(graph, file, {.title = title(input), .all_tracks = all});
+        });
       else
         std::visit(write_labelled, input.contour);
     }
@@ -274,7 +277,7 @@ class TrackCommand final : public ContourInputCommand {
   [[nodiscard]] std::string report(const Console& console, const ContourInput& input, const TrackGraph& graph,
                                    std::size_t all, double track_seconds, double write_seconds) const {
     const std::string axis = input.axis_name(input.space_dim() - 1);
-    std::string text = fmt::format("{}\n{}", console.bold(fmt::format("Parts along {}", axis)), input_text(input));
+    std::string text = fmt::format("{}\n{}", console.bold(fmt::format("Components along {}", axis)), input_text(input));
     text += report_line("tracks", graph.tracks.size() == all
                                       ? grouped(all)
                                       : fmt::format("{} of {}", grouped(graph.tracks.size()), grouped(all)));
