@@ -381,6 +381,14 @@ class Viewer(Pages):
             button.offsetWidth > 0 && Math.min(button.offsetWidth, button.offsetHeight) < 34).length""")
         self.assertEqual(small, 0)
 
+    def test_the_panel_needs_no_scroll_bar_on_a_laptop(self):
+        tegl("view", OCEAN, "--iso", 20, "-o", self.folder / "laptop.html", "-q")
+        self.browser.size(1280, 757)
+        browser = self.open("laptop.html")
+        height, shown = browser.run("const panel = document.getElementById('panel'); return [panel.scrollHeight, panel.clientHeight]")
+        self.assertGreater(shown, 200)
+        self.assertLessEqual(height, shown)
+
     def test_small_pages_are_mostly_picture(self):
         tegl("view", OCEAN, "--iso", 27, "--tracks", 30, "-o", self.folder / "small.html", "-q")
         for size, least in (((844, 390), 0.75), ((667, 375), 0.75), ((320, 568), 0.6)):
