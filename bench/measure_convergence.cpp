@@ -45,7 +45,7 @@ void measure_expanding_ball(const std::vector<std::size_t>& tiles) {
       size_error = std::max(size_error, std::abs(cut.size / exact.surface() - 1));
       content_error = std::max(content_error, std::abs(cut.content.value() / exact.content() - 1));
     }
-    print("cuts of an expanding ball", count, size_error, content_error);
+    print("slices of an expanding ball", count, size_error, content_error);
   }
 }
 

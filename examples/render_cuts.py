@@ -178,6 +178,25 @@ def draw_rim(axes, west, east):
         axes.plot(*project(np.array(line)).T, color=EDGE, linewidth=0.6)
 
 
+def degrees(value, negative, positive):
+    """-30 -> '30° S'; longitudes beyond 180 degrees are west."""
+    value = value - 360 if value > 180 else value
+    return f"{abs(value):g}°" + (f" {negative if value < 0 else positive}" if value % 180 else "")
+
+
+def draw_degrees(axes, west, east):
+    """Longitudes below the block, along its edge nearest to the eye; latitudes beside it, at the surface of the sea."""
+    style = {"fontsize": 8.5, "color": "#666666"}
+    for lon in range(60 * int(np.ceil(west / 60)), int(east) + 1, 60):
+        x, y = project(np.array([lon, SOUTH, FLOOR]))
+        axes.plot([x, x], [y, y - 1.2], color=EDGE, linewidth=0.8, clip_on=False)
+        axes.text(x, y - 1.8, degrees(lon, "W", "E"), ha="center", va="top", **style)
+    for lat in (-30, 0, 30):
+        x, y = project(np.array([west, lat, 0.0]))
+        axes.plot([x - 1.2, x], [y, y], color=EDGE, linewidth=0.8, clip_on=False)
+        axes.text(x - 2, y, degrees(lat, "S", "N"), ha="right", va="center", **style)
+
+
 def panel(axes, time, path, ground, colours, scale):
     ground_shapes, ground_colours, (west, east) = ground
     vertices, triangles = read_ply(path)
@@ -187,6 +206,7 @@ def panel(axes, time, path, ground, colours, scale):
     draw_box(axes, west, east)
     draw(axes, np.concatenate([ground_shapes, shapes]), np.concatenate([ground_colours, faces]))
     draw_rim(axes, west, east)
+    draw_degrees(axes, west, east)
     lowest, highest = (project(np.array([west, *corner]))[1] for corner in ((SOUTH, FLOOR), (NORTH, 0.0)))
     axes.set_xlim(west - 1, east + 1)
     axes.set_ylim(lowest - 1, highest + 1)
@@ -217,7 +237,7 @@ def main():
     colours, scale = plt.get_cmap("viridis_r"), Normalize(0.0, 250.0)
     ground = ground_polygons(arguments.land)
     figure, panels = plt.subplots(len(cuts), 1, figsize=(11, 2.95 * len(cuts)), squeeze=False)
-    figure.subplots_adjust(left=0.005, right=0.915, top=1 - 0.11 / len(cuts), bottom=0.01, hspace=0.12)
+    figure.subplots_adjust(left=0.042, right=0.918, top=1 - 0.11 / len(cuts), bottom=0.022, hspace=0.16)
     for axes, (time, path) in zip(panels[:, 0], cuts):
         panel(axes, time, path, ground, colours, scale)
     bar = figure.colorbar(plt.cm.ScalarMappable(scale, colours), cax=figure.add_axes([0.93, 0.25, 0.014, 0.5]))

@@ -4,9 +4,11 @@
 
     tegl project fingers.nhdr --iso 30 --as cuts --count 6 -o cuts.ply
     tegl project fingers.nhdr --iso 30 --close -o swept.ply
-    examples/render_projection.py -o projection.png "six times=cuts.ply" "all that is swept=swept.ply"
+    examples/render_projection.py -o projection.png --down --time "time step" "the surface at six times=cuts.ply" \
+      "all that it sweeps=swept.ply"
 
-Each is a caption and a PLY file of triangles with vertex colours and, for the scale below, a time in the property t.
+Each is a caption and a PLY file of triangles with vertex colours and, for the scale below, a time in the property t;
+--time names it and its unit. All have one scale.
 The last axis in the file points down, as depths do, with --down. Needs python3-numpy and python3-matplotlib;
 polygons are painted from the far to the near.
 """
@@ -35,7 +37,7 @@ def axes_of_view():
 
 
 def draw(axes, path, down):
-    """One surface; returns the range of its times."""
+    """One surface; returns the range of its times, and its lowest and highest place in the picture."""
     tables = read_ply_tables(path)
     table = tables["vertex"]
     points = np.stack([table[c].astype(float) for c in "xyz"], axis=1)
@@ -52,25 +54,29 @@ def draw(axes, path, down):
     flat = np.stack([corners @ right, corners @ up], axis=-1)
     axes.add_collection(PolyCollection(flat[order], facecolors=np.clip(faces, 0, 1)[order],
                                        edgecolors=np.clip(faces, 0, 1)[order], linewidths=0.15))
-    axes.set_xlim(flat[..., 0].min(), flat[..., 0].max())
-    axes.set_ylim(flat[..., 1].min(), flat[..., 1].max())
     axes.set_aspect("equal")
     axes.axis("off")
-    return table["t"].min(), table["t"].max()
+    return (table["t"].min(), table["t"].max()), flat.min(axis=(0, 1)), flat.max(axis=(0, 1))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-o", "--output", required=True)
     parser.add_argument("--down", action="store_true", help="the last axis points down")
+    parser.add_argument("--time", default="t", help="the name of the colours, with a unit")
     parser.add_argument("panels", nargs="+", metavar="CAPTION=FILE")
     options = parser.parse_args()
     figure, panels = plt.subplots(1, len(options.panels), figsize=(5.2 * len(options.panels), 5.4), squeeze=False)
-    times = []
+    drawn = []
     for axes, panel in zip(panels[0], options.panels):
         caption, _, path = panel.rpartition("=")
-        times.append(draw(axes, path, options.down))
+        drawn.append(draw(axes, path, options.down))
         axes.set_title(caption, fontsize=12, color="#333333")
+    times, lowest, highest = zip(*drawn)
+    (left, bottom), (right, top) = np.min(lowest, axis=0), np.max(highest, axis=0)
+    for axes in panels[0]:
+        axes.set_xlim(left, right)
+        axes.set_ylim(bottom, top)
     viridis = [(68, 1, 84), (71, 45, 123), (59, 82, 139), (44, 114, 142), (33, 145, 140), (40, 174, 128), (94, 201, 98),
                (173, 220, 48), (253, 231, 37)]
     steps = np.linspace(0, 8, 256)
@@ -78,7 +84,7 @@ def main():
     scale = plt.cm.ScalarMappable(plt.Normalize(min(t[0] for t in times), max(t[1] for t in times)),
                                   ListedColormap(colours))
     bar = figure.colorbar(scale, ax=list(panels[0]), orientation="horizontal", fraction=0.04, pad=0.02, aspect=50)
-    bar.set_label("t")
+    bar.set_label(options.time)
     figure.savefig(options.output, dpi=100, bbox_inches="tight", pad_inches=0.1, metadata={"Software": None})
 
 

@@ -56,7 +56,7 @@ TEST_F(Slice, AMeshInAPlaneHasTheNamesOfItsAxes) {
   const auto slice = [&](const std::string& at) {
     return run_tegl({"slice", steps[0], steps[1], "--iso", "0.5", "--at", at, "-o", path("cut.ply")});
   };
-  EXPECT_THAT(slice("z=0").out, HasSubstr("Cut at z = 0"));
+  EXPECT_THAT(slice("z=0").out, HasSubstr("Slice at z = 0"));
   for (const char* const at : {"y=0", "y=7"}) {
     const RunResult run = slice(at);
     EXPECT_EQ(run.exit, 2);

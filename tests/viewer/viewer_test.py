@@ -103,11 +103,11 @@ class Viewer(Pages):
         browser = self.open()
         merge = browser.element("#graph .event.merge")
         merge.click()
-        self.assertRegex(merge.get_attribute("aria-label"), r"^t [\d.]+: 2 parts merge at \(")
+        self.assertRegex(merge.get_attribute("aria-label"), r"^t [\d.]+: 2 components merge at \(")
         event = browser.run("return tegl.app.event")
         self.assertEqual(event["kind"], "merge")
         self.assertEqual(browser.run("return tegl.time"), event["time"])
-        self.assertIn("2 parts merge", browser.element("#now").text)
+        self.assertIn("2 components merge", browser.element("#now").text)
         self.assertTrue(browser.element(".marker").is_displayed())
         browser.element("#before").click()
         self.assertLess(browser.run("return tegl.time"), event["time"])
@@ -115,14 +115,14 @@ class Viewer(Pages):
     def test_events_count_all_parts_and_say_how_many_are_drawn(self):
         browser = self.view("one", self.folder / "balls.vtkhdf", "--tracks", 1)
         label = browser.element("#graph .event.merge").get_attribute("aria-label")
-        self.assertRegex(label, r"^t [\d.]+: 2 parts merge \(1 of them drawn\) at \(")
+        self.assertRegex(label, r"^t [\d.]+: 2 components merge \(1 of them drawn\) at \(")
         self.assertEqual(browser.element("#graph-note").text, "1 of 2 tracks, those with the longest lifetime, with 3 of 4 events.")
         events = browser.run("return tegl.app.timeline.events()")
         self.assertEqual([(event["parts_in"], event["parts_out"]) for event in events if event["kind"] == "merge"], [(2, 1)])
         write_balls(self.folder / "apart.nrrd", is_backwards=True)
         browser = self.view("apart", self.folder / "apart.nrrd", "--iso", 0, "--tracks", 1)
         label = browser.element("#graph .event.split").get_attribute("aria-label")
-        self.assertRegex(label, r": a part splits into 2 \(1 of them drawn\) at \(")
+        self.assertRegex(label, r": a component splits into 2 \(1 of them drawn\) at \(")
         browser = self.open()
         self.assertEqual(browser.element("#graph-note").text, "", "all are drawn")
         words = browser.run("""const { timeline } = tegl.app;
@@ -130,8 +130,8 @@ class Viewer(Pages):
             return ['merge', 'exchange'].map((kind) => timeline.describe({ ...event, kind })).concat(
                 timeline.describe({ ...event, kind: 'birth', parts_in: 0, in: [] }),
                 timeline.describe({ ...event, kind: 'death', parts_in: 1, in: [0], parts_out: 0, out: [] }))""")
-        self.assertEqual(words, ["2 parts merge at (0.5)", "2 parts meet and become 3 at (0.5)",
-                                 "3 parts are born (1 of them drawn) at (0.5)", "a part dies at (0.5)"])
+        self.assertEqual(words, ["2 components merge at (0.5)", "2 components meet and become 3 at (0.5)",
+                                 "3 components are born (1 of them drawn) at (0.5)", "a component dies at (0.5)"])
 
     def test_a_crowd_of_events_is_marks_with_numbers_that_do_not_overlap(self):
         write_noise(self.folder / "crowd.nrrd", (9, 9, 9, 12), seed=3)
@@ -380,6 +380,14 @@ class Viewer(Pages):
         small = browser.run("""return [...document.querySelectorAll('header button, footer button')].filter((button) =>
             button.offsetWidth > 0 && Math.min(button.offsetWidth, button.offsetHeight) < 34).length""")
         self.assertEqual(small, 0)
+
+    def test_the_panel_needs_no_scroll_bar_on_a_laptop(self):
+        tegl("view", OCEAN, "--iso", 20, "-o", self.folder / "laptop.html", "-q")
+        self.browser.size(1280, 757)
+        browser = self.open("laptop.html")
+        height, shown = browser.run("const panel = document.getElementById('panel'); return [panel.scrollHeight, panel.clientHeight]")
+        self.assertGreater(shown, 200)
+        self.assertLessEqual(height, shown)
 
     def test_small_pages_are_mostly_picture(self):
         tegl("view", OCEAN, "--iso", 27, "--tracks", 30, "-o", self.folder / "small.html", "-q")

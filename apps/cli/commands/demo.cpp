@@ -334,7 +334,7 @@ class DemoCommand final : public Command {
                                                counted_simplices(3, contour.simplices.size()), seconds));
     for (const double t : kTimes)
       text +=
-          report_line(t == kTimes[0] ? "cuts" : "",
+          report_line(t == kTimes[0] ? "slices" : "",
                       fmt::format("t = {:5.2f}, {:<12} {}", t, month_text(t),
                                   counted_simplices(2, slice(contour, Hyperplane<4>::across(3, t)).simplices.size())));
     text += fmt::format(

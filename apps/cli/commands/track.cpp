@@ -34,7 +34,7 @@ constexpr const char* kTrackExamples =
     "  tegl contour heart.nii.gz --iso 400 -o heart.vtkhdf\n"
     "  tegl track heart.vtkhdf --min-lifetime 0.5 -o heart.json -o heart.dot --csv heart\n"
     "  tegl track heart.vtkhdf --largest 5 -o heart.svg -o by_track.vtkhdf\n"
-    "Each part of the moving surface is tracked from birth to death, through merges and splits, at their\n"
+    "Each component of the moving surface is tracked from birth to death, through merges and splits, at their\n"
     "exact times between the steps. 'begin' and 'end' are at the first and last step of the data, 'enter' and 'leave'\n"
     "at the image's other borders and at missing values.";
 
@@ -90,7 +90,8 @@ std::vector<std::pair<std::string, std::size_t>> kinds_of(const TrackGraph& grap
 class TrackCommand final : public ContourInputCommand {
  public:
   explicit TrackCommand(CLI::App& program)
-      : ContourInputCommand(program, "track", "Track the parts of a moving contour: births, merges, splits, deaths") {
+      : ContourInputCommand(program, "track",
+                            "Track the components of a moving contour: births, merges, splits, deaths") {
     app()
         .add_option("-o,--output", outputs_,
                     "the graph as .json or .dot, its picture as .svg, or the contour with the track of each simplex "
@@ -100,13 +101,14 @@ class TrackCommand final : public ContourInputCommand {
         .add_option("--csv", csv_, "tables: NAME-events.csv, NAME-segments.csv and NAME-samples.csv")
         ->type_name("NAME");
     app()
-        .add_option("--min-lifetime", min_lifetime_,
-                    "remove branches with a shorter lifetime, in the unit of the last axis; parts that split and merge "
-                    "again are removed only if none of them splits in between")
+        .add_option(
+            "--min-lifetime", min_lifetime_,
+            "remove branches with a shorter lifetime, in the unit of the last axis; components that split and merge "
+            "again are removed only if none of them splits in between")
         ->type_name("NUMBER");
     app()
         .add_option("--samples", samples_,
-                    "number of times at which parts are measured, evenly spaced over the whole time")
+                    "number of times at which components are measured, evenly spaced over the whole time")
         ->check(whole_number(0, 1000000))
         ->type_name("COUNT")
         ->capture_default_str();
@@ -141,7 +143,7 @@ class TrackCommand final : public ContourInputCommand {
     graph = selected(std::move(graph));
     const double track_seconds = watch.lap();
     // write
-    write(input, graph, bar);
+    write(input, graph, all, bar);
     const double write_seconds = watch.lap();
     // report
     bar.clear();
@@ -213,7 +215,8 @@ class TrackCommand final : public ContourInputCommand {
     return select_tracks(graph, keep);
   }
 
-  void write(ContourInput& input, const TrackGraph& graph, ProgressBar& bar) {
+  /// `all`: the number of tracks before a choice.
+  void write(ContourInput& input, const TrackGraph& graph, std::size_t all, ProgressBar& bar) {
     // graph files, and contours with labels
     WrittenFiles written;
     for (const std::string& output : outputs_) {
@@ -229,7 +232,9 @@ class TrackCommand final : public ContourInputCommand {
         lost_ += lost;
       };
       if (is_track_file(output))
-        written.write(output, [&](const PendingPath& file) { write_track(graph, file, {.title = title(input)}); });
+        written.write(output, [&](const PendingPath& file) {
+          write_track(graph, file, {.title = title(input), .all_tracks = all});
+        });
       else
         std::visit(write_labelled, input.contour);
     }
@@ -274,7 +279,7 @@ class TrackCommand final : public ContourInputCommand {
   [[nodiscard]] std::string report(const Console& console, const ContourInput& input, const TrackGraph& graph,
                                    std::size_t all, double track_seconds, double write_seconds) const {
     const std::string axis = input.axis_name(input.space_dim() - 1);
-    std::string text = fmt::format("{}\n{}", console.bold(fmt::format("Parts along {}", axis)), input_text(input));
+    std::string text = fmt::format("{}\n{}", console.bold(fmt::format("Components along {}", axis)), input_text(input));
     text += report_line("tracks", graph.tracks.size() == all
                                       ? grouped(all)
                                       : fmt::format("{} of {}", grouped(graph.tracks.size()), grouped(all)));

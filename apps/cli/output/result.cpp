@@ -274,7 +274,7 @@ Json to_json(const ContourResult& result) {
 
 std::string to_text(const Console& console, const ContourResult& result) {
   // heading
-  std::string what = result.cut ? fmt::format("Cut at {} = {}", result.cut->axis, number(result.cut->value))
+  std::string what = result.cut ? fmt::format("Slice at {} = {}", result.cut->axis, number(result.cut->value))
                                 : fmt::format("Contour in {}D", result.image_dim);
   if (!result.wording.heading.empty()) what = result.wording.heading;
   if (result.isovalue) what += fmt::format(" of the isovalue {}", number(*result.isovalue));

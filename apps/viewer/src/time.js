@@ -26,7 +26,7 @@ export function ends(lowest, highest, span = highest - lowest) {
   return (value) => number(value, span || 1, most);
 }
 
-/** "1 part", "12 parts". */
+/** "1 component", "12 components". */
 export const counted = (count, one, several = `${one}s`) => `${grouped(count)} ${count === 1 ? one : several}`;
 
 export const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, '\u202f');

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is below the picture: the slider, and the graph of the parts with its events.
+// What is below the picture: the slider, and the graph of the components with its events.
 import { css, ofPart } from './colors.js';
 import { crowdsOf, widthOf } from './crowds.js';
 import { counted, ends, grouped, number, ticks } from './time.js';
@@ -11,7 +11,7 @@ const LANE = 9;
 const STEPS = { ArrowLeft: -1, ArrowRight: 1 };
 const AXIS = 20;
 
-/** What parts do at an event, one and several. */
+/** What components do at an event, one and several. */
 const WHAT = { begin: ['exists at the start', 'exist at the start'], birth: ['is born', 'are born'],
   enter: ['enters at the border', 'enter at the border'], end: ['exists at the end', 'exist at the end'],
   death: ['dies', 'die'], leave: ['leaves at the border', 'leave at the border'], merge: ['merges', 'merge'] };
@@ -90,7 +90,7 @@ export class Timeline {
     this.holder.replaceChildren();
     const scale = make('svg', { class: 'scale', width: this.width, height: AXIS }, this.holder);
     const svg = make('svg', { width: this.width, height, role: 'group',
-      'aria-label': 'Parts over time, with their events' }, this.holder);
+      'aria-label': 'Components over time, with their events' }, this.holder);
     this.drawTicks(scale, svg, height);
     if (tracks.length > 0) this.drawTracks(svg, graph, lanes);
     this.cursor = make('line', { class: 'cursor', y1: 0, y2: height }, svg);
@@ -201,16 +201,16 @@ export class Timeline {
     next.focus();
   }
 
-  /** What happened, in words, with the numbers of all parts: of how many the tracks are drawn is said where it differs. */
+  /** What happened, in words, with the numbers of all components: of how many the tracks are drawn is said where it differs. */
   describe(event) {
     const { kind, parts_in: before, parts_out: after } = event;
     const where = event.place.map((value) => number(value)).join(', ');
     // Those that the event is about: what comes of a split, what was there before a merge, and the only ones of a birth.
     const isOfLater = kind === 'split' || before === 0;
     const [all, drawn] = isOfLater ? [after, event.out.length] : [before, event.in.length];
-    const parts = kind === 'split' ? `a part splits into ${after}` : kind === 'exchange'
-      ? `${counted(before, 'part')} meet and become ${after}`
-      : all === 1 ? `a part ${WHAT[kind][0]}` : `${counted(all, 'part')} ${WHAT[kind][1]}`;
+    const parts = kind === 'split' ? `a component splits into ${after}` : kind === 'exchange'
+      ? `${counted(before, 'component')} meet and become ${after}`
+      : all === 1 ? `a component ${WHAT[kind][0]}` : `${counted(all, 'component')} ${WHAT[kind][1]}`;
     return `${parts}${drawn < all ? ` (${drawn === 0 ? 'none' : drawn} of them drawn)` : ''} at (${where})`;
   }
 }

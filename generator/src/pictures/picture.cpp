@@ -24,8 +24,7 @@ constexpr const char* kStyle =
     "stroke-width:1.1;"
     "stroke-dasharray:4 "
     "4;stroke-linecap:butt}.high{fill:#1d1d1d;stroke:#fff}.low{fill:#fff;stroke:#555;stroke-width:1.3}"
-    ".behind{opacity:.5;stroke-dasharray:2 "
-    "2}.side{fill-opacity:.93;stroke-width:.7}.rim{stroke:#3a3a3a;stroke-width:1.6}"
+    ".behind{opacity:.5}.side{fill-opacity:.93;stroke-width:.7}.rim{stroke:#3a3a3a;stroke-width:1.6}"
     ".mesh{stroke:#fff;stroke-opacity:.55;stroke-width:.8}.segment{stroke:#2f62a8;stroke-width:4}"
     ".towards{stroke:#f0a53c;stroke-width:4}.mark{stroke:#d4145a;stroke-width:5}"
     "text{font:13px sans-serif;fill:#555;text-anchor:middle}</style>\n";

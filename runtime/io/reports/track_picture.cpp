@@ -29,6 +29,7 @@ constexpr const char* kStyle =
     ".title { font-size: 15px; fill: #222 }\n"
     ".grid { stroke: #888; stroke-opacity: 0.25 }\n"
     ".link { stroke: #777; stroke-width: 1.5; fill: none }\n"
+    ".away { stroke-dasharray: 2 2 }\n"
     ".mark { stroke: #333; fill: none }\n"
     ".full { fill: #333; stroke: #333; stroke-width: 1.3 }\n"
     ".open { fill: #fff; stroke: #333; stroke-width: 1.3 }\n"
@@ -243,14 +244,15 @@ class Drawing {
   }
 
   void draw_titles() {
-    const std::string title = escaped(picture_.title.empty() ? "Parts through time" : picture_.title);
+    const std::string title = escaped(picture_.title.empty() ? "Components over time" : picture_.title);
     text_ += fmt::format("<title>{0}</title>\n<text class=\"title\" x=\"{1}\" y=\"22\">{0}</text>\n", title, kLeft);
-    std::string what = graph_.tracks.size() == all_
-                           ? fmt::format("{} track{}", all_, all_ == 1 ? "" : "s")
-                           : fmt::format("the {} longest of {} tracks", graph_.tracks.size(), all_);
+    const std::size_t drawn = graph_.tracks.size(), all = std::max(all_, picture_.all_tracks);
+    std::string what = drawn == all  ? fmt::format("{} track{}", all, all == 1 ? "" : "s")
+                       : all_ == all ? fmt::format("the {} longest of {} tracks", drawn, all)
+                                     : fmt::format("{} of {} tracks", drawn, all);
     constexpr std::array kMeasures{"number of points", "length", "area", "volume"};
     if (largest_ > 0 && graph_.space_dim >= 2)
-      what += fmt::format("; thick as the square root of the {}",
+      what += fmt::format("; width proportional to the square root of the {}",
                           kMeasures[static_cast<std::size_t>(graph_.space_dim - 2)]);
     text_ += fmt::format("<text x=\"{}\" y=\"40\">{}</text>\n", kLeft, what);
   }
@@ -330,12 +332,34 @@ class Drawing {
     return rows;
   }
 
+  /// Whether a merge, split or exchange has only one track here: the others are left out.
+  [[nodiscard]] static bool is_partial(const TrackEvent& event) {
+    switch (event.kind) {
+      case TrackEventKind::merge:
+        return event.in.size() < 2;
+      case TrackEventKind::split:
+        return event.out.size() < 2;
+      case TrackEventKind::exchange:
+        return event.in.size() < 2 && event.out.size() < 2;
+      default:
+        return false;
+    }
+  }
+
+  /// A dotted line below a mark, for tracks that are not drawn.
+  [[nodiscard]] std::string stub(double x, double y) const {
+    return fmt::format("<path class=\"link away\" d=\"M{:.2f} {:.2f}v{:.2f}\"/>", x, y,
+                       std::min(0.8 * row_height_, 14.0));
+  }
+
   void draw_event(const TrackEvent& event) {
     const Index main = rows_.through(event);
     const double row = main == kNone ? rows_of(event).front() : y(main);
     std::string place;
     for (int a = 0; a + 1 < graph_.space_dim; ++a) place += fmt::format("{}{:.6g}", a == 0 ? "" : ", ", event.place[a]);
-    text_ += fmt::format("<g><title>{} at {:.6g}, place {}</title>{}</g>\n", name_of(event.kind), event.time, place,
+    const bool partial = is_partial(event);
+    text_ += fmt::format("<g><title>{} at {:.6g}, place {}{}</title>{}{}</g>\n", name_of(event.kind), event.time, place,
+                         partial ? ", with a track that is not drawn" : "", partial ? stub(x(event.time), row) : "",
                          mark(event.kind, x(event.time), row));
   }
 
@@ -354,6 +378,8 @@ class Drawing {
         entry(mark(kind, at, row), name_of(kind));
     }
     if (!graph_.handles.empty()) entry(handle_mark(at, row), "handle opens or closes");
+    if (std::any_of(graph_.events.begin(), graph_.events.end(), is_partial))
+      entry(stub(at, row - 7), "to a track that is not drawn");
   }
 
   const TrackPicture& picture_;

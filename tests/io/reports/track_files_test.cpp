@@ -21,6 +21,7 @@ namespace tegl::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 Contour<4, double> contour_of(const std::string& path, const std::string& variable, double isovalue) {
   const ReadImageResult input = read_image(path, {.variable = variable});
@@ -115,6 +116,9 @@ TEST(TrackFiles, ThePictureShowsTheLongestTracks) {
   EXPECT_THAT(track_svg(fork()), HasSubstr("2 tracks"));
   EXPECT_THAT(track_svg(fork(), {.most_tracks = 1}), HasSubstr("the 1 longest of 2 tracks"));
   EXPECT_THAT(track_svg(TrackGraph{}), HasSubstr("0 tracks"));
+  EXPECT_THAT(track_svg(fork(), {.all_tracks = 7}), HasSubstr("2 of 7 tracks"));
+  EXPECT_THAT(track_svg(fork()), Not(HasSubstr("not drawn")));
+  EXPECT_THAT(track_svg(fork(), {.most_tracks = 1}), HasSubstr(", with a track that is not drawn</title>"));
 }
 
 TrackGraph graph_of_the_ocean() {

@@ -30,11 +30,12 @@ struct TrackPicture {
   std::string title = {};        ///< may be empty
   double width = 960;            ///< in pixels
   std::size_t most_tracks = 60;  ///< maximum number of tracks: the longest-lived; of equal lifetimes the first
+  std::size_t all_tracks = 0;    ///< number of tracks before `select_tracks`, for the title; 0: those of the graph
 };
 
 /// The graph as an SVG picture: time from left to right, a line for each track. Line width is proportional to the
-/// square root of the part's measure if there are samples. Merging and splitting tracks are connected, and events are
-/// marked. Readable on light and dark backgrounds.
+/// square root of the component's measure if there are samples. Merging and splitting tracks are connected, and events
+/// are marked. Readable on light and dark backgrounds.
 [[nodiscard]] std::string track_svg(const TrackGraph& graph, const TrackPicture& picture = {});
 
 /// Writes a file by extension: .json, .dot (or .gv) or .svg. The file appears complete or not at all. Errors:
