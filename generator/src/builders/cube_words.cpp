@@ -56,7 +56,8 @@ struct Resolved {
   void expect_list(unsigned number, unsigned flag, unsigned choice, const CubeLists& lists,
                    const tables::ResolvedEntry& of) const {
     const bool is_none = signature == 0 || signature == 255;
-    expect((number == lists.lists.size()) == is_none, "a list if, and only if, the cube has corners of both signs");
+    expect(is_none ? number == lists.lists.size() : number < lists.lists.size(),
+           "a list if, and only if, the cube has corners of both signs");
     if (!is_none) {
       const CubeLists::List& list = lists.lists[number];
       expect(list.signature == signature && list.high_squares == high_squares, "a list of this resolution");

@@ -14,6 +14,11 @@
 namespace tegl::gen {
 namespace {
 
+const TesseractArrays& made_arrays() {
+  static const TesseractArrays arrays = make_tesseract_arrays();
+  return arrays;
+}
+
 bool is_certified(const CubeWords& words, const TesseractArrays& arrays) {
   try {
     certify(words, arrays);
@@ -25,7 +30,7 @@ bool is_certified(const CubeWords& words, const TesseractArrays& arrays) {
 }
 
 TEST(CubeWords, AnyChangedBitOfAnyWordIsFound) {
-  const TesseractArrays arrays = make_tesseract_arrays();
+  const TesseractArrays& arrays = made_arrays();
   const std::vector<CubeWords> made = make_cube_words(arrays);
   ASSERT_EQ(6u, made.size());
   for (const CubeWords& words : made) {
@@ -41,7 +46,7 @@ TEST(CubeWords, AnyChangedBitOfAnyWordIsFound) {
 }
 
 TEST(CubeWords, OtherWordsAreFound) {
-  const TesseractArrays arrays = make_tesseract_arrays();
+  const TesseractArrays& arrays = made_arrays();
   std::vector<CubeWords> made = make_cube_words(arrays);
   // those of another content
   CubeWords other = made[0];
