@@ -20,6 +20,7 @@
 #include "builders/cube_facets.hpp"
 #include "builders/cube_lists.hpp"
 #include "builders/cube_regions.hpp"
+#include "builders/cube_words.hpp"
 #include "builders/emit_builder.hpp"
 #include "builders/templates.hpp"
 #include "builders/tesseract_arrays.hpp"
@@ -332,6 +333,21 @@ void add_facet_builder(const BuilderRequest& request, const TesseractArrays& arr
                                                      {"reversed_cubes", fmt::format("{:#04x}", reversed_cubes())}})});
 }
 
+/// The tables by which the lists of many cubes are looked up: header and source.
+void add_lookup(const BuilderRequest& request, const TesseractArrays& arrays, BuilderTexts& texts) {
+  const std::vector<CubeWords> words = make_cube_words(arrays);
+  const std::string certificate =
+      fmt::format("{} words about each of {} resolved cubes name its lists, choices and pairs of edges", words.size(),
+                  arrays.cube.entries.size());
+  texts.certificate += "; " + certificate;
+  const std::string banner = builder_banner(request, Language::cpp, "Lookups of the lists of cubes.", certificate);
+  const std::string name = builder_name(request) + "_lookup";
+  const std::pair<std::string, std::string> common[] = {{"banner", banner}, {"namespace", builder_namespace(request)}};
+  texts.files.push_back({name + ".hpp", filled("builder4_lookup.hpp", {common[0], common[1]})});
+  texts.files.push_back(
+      {name + ".cpp", filled("builder4_lookup.cpp", {common[0], common[1], {"arrays", words_text(words, arrays)}})});
+}
+
 }  // namespace
 
 BuilderTexts emit_tesseract_builder(const BuilderRequest& request) {
@@ -370,6 +386,7 @@ BuilderTexts emit_tesseract_builder(const BuilderRequest& request) {
     texts.files.push_back({name + "_lists.cpp", filled("builder4_lists.cpp", {{"banner", banner("Arrays.")},
                                                                               {"arrays", arrays_text(arrays)}})});
     add_facet_builder(request, arrays, texts);
+    add_lookup(request, arrays, texts);
   }
   return texts;
 }

@@ -250,6 +250,7 @@ TesseractArrays make_tesseract_arrays() {
   TableSet set = make_table_set(request);
   TesseractArrays arrays;
   arrays.cube = std::move(*set.resolved);
+  arrays.joins = std::move(set.joins);
   for (const VariantTables& variants : set.variants) {
     arrays.lists.push_back(make_cube_lists(arrays.cube, variants));
     arrays.regions.push_back(make_cube_regions(arrays.lists.back(), false));

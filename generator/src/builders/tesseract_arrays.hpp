@@ -15,6 +15,7 @@ namespace tegl::gen {
 /// All arrays, by triangulation: barycentric, compact.
 struct TesseractArrays {
   ResolvedCube cube;
+  std::vector<tables::CubeJoin> joins;  ///< by entry of `cube`
   std::vector<CubeLists> lists;      ///< barycentric, compact
   std::vector<CubeRegions> regions;  ///< barycentric, compact; caps of both, for closed borders
 

@@ -4,10 +4,6 @@
 // set.
 #include "ambiguity/cube_lists.hpp"
 
-#include <type_traits>
-
-#include "ambiguity/saddle.hpp"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ambiguity/cube_lists.cpp"
 #include "base/dispatch.hpp"
@@ -96,42 +92,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 
 namespace tegl::detail {
-
-CubeListTable::CubeListTable(Content content, Triangulation triangulation) noexcept {
-  static_assert(ResolvedCubes::kNone < 1u << kBits);
-  const ResolvedCubes& cubes = ResolvedCubes::instance(triangulation);
-  const auto flag = [&](unsigned list, unsigned bit) { return (cubes.own_vertices(list) != 0 ? 1u : 0u) << bit; };
-  for (unsigned squares = 0; squares < 64; ++squares)
-    for (unsigned signature = 0; signature < 256; ++signature) {
-      const unsigned number = ResolvedCubes::entry(signature, squares);
-      const ResolvedCubes::Entry& entry = ResolvedCubes::at_entry(number);
-      const bool by_centre = content == Content::by_centre, with_joins = content == Content::with_joins;
-      const unsigned first = entry.lists[by_centre ? 1 : 0], second = entry.lists[by_centre ? 2 : 0];
-      const unsigned pairs = with_joins ? cube_joins()[number].pairs : 0;
-      std::uint32_t word = first | (with_joins ? number : second) << kBits;
-      word |= flag(first, kFirstHasVertices) | flag(second, kSecondHasVertices);
-      if (by_centre && entry.has_choice != 0) word |= 1u << kHasChoiceOrPair;
-      if (pairs == 1) word |= 1u << kHasChoiceOrPair;
-      if (pairs > 1) word |= 1u << kHasPairs;
-      words_[signature + 256 * squares] = word;
-    }
-}
-
-template <CubeListTable::Content kContent, Triangulation kTriangulation>
-const CubeListTable& CubeListTable::instance() noexcept {
-  static const CubeListTable table(kContent, kTriangulation);
-  return table;
-}
-
-const CubeListTable& CubeListTable::instance(Content content, Triangulation triangulation) noexcept {
-  const auto of = [&]<Content kContent>(std::integral_constant<Content, kContent>) -> const CubeListTable& {
-    return triangulation == Triangulation::compact ? instance<kContent, Triangulation::compact>()
-                                                   : instance<kContent, Triangulation::barycentric>();
-  };
-  if (content == Content::separate) return of(std::integral_constant<Content, Content::separate>{});
-  if (content == Content::by_centre) return of(std::integral_constant<Content, Content::by_centre>{});
-  return of(std::integral_constant<Content, Content::with_joins>{});
-}
 
 HWY_EXPORT(look_up);
 

@@ -8,6 +8,7 @@
 #include <bit>
 
 #include "ambiguity/saddle.hpp"
+#include "builder4_lookup.hpp"
 #include "tile/tesseract_fill.hpp"
 
 #define HWY_WANT_AVX3_DL
@@ -17,36 +18,13 @@
 // This include must precede Highway's own headers.
 #include "hwy/highway.h"
 
-#ifndef TEGL_CUBE_WORDS_ONCE
-#define TEGL_CUBE_WORDS_ONCE
-
-namespace tegl::detail {
-
-/// The table of resolved cubes for lookups in registers.
-struct CubeBytes {
-  using BySignature = std::array<std::uint8_t, 256>;
-  /// The first entry of each signature, in two bytes.
-  alignas(64) BySignature first_low{}, first_high{};
-  /// The ambiguous squares, and the masks with which three steps move their bits together: as H. S. Warren, Hacker's
-  /// Delight, 2nd edition, section 7-4 (compress).
-  alignas(64) BySignature ambiguous{};
-  alignas(64) std::array<BySignature, 3> moved{};
-  /// By entry, as bits: whether one pair of edges may join inside the cube, or more.
-  alignas(64) std::array<std::uint8_t, 128> with_one_pair{}, with_more{};
-};
-/// Defined below, among the code for all processors. Made at the first call, which may precede the constants' dynamic
-/// initialisation.
-const CubeBytes& cube_bytes() noexcept;
-
-}  // namespace tegl::detail
-
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace tegl::detail {
 namespace HWY_NAMESPACE {
 
 #if HWY_TARGET <= HWY_AVX3_DL
+
+using builders::CubeBytes;
 
 /// Entries of `places` in a table of 256.
 HWY_INLINE __m512i looked_up(const CubeBytes::BySignature& table, __m512i places) {
@@ -127,7 +105,7 @@ HWY_INLINE void choose_by(const std::uint8_t* high, const Variant* variants, Cub
     return _mm512_maskz_compress_epi8(ambiguous, _mm512_maskz_compress_epi8(cubes.active, by_place));
   };
   const __m512i faces = of_active(_mm512_loadu_si512(high));
-  const CubeBytes& bytes = cube_bytes();
+  const CubeBytes& bytes = builders::kCubeBytes;
   const Entries entries(bytes, _mm512_maskz_compress_epi8(ambiguous, narrow), faces);
   const auto count = static_cast<unsigned>(std::popcount(ambiguous));
   if constexpr (Rule == CentreRule::by_joins) {
@@ -236,39 +214,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 
 namespace tegl::detail {
-
-namespace {
-
-CubeBytes made_cube_bytes() {
-  CubeBytes bytes;
-  for (unsigned signature = 0; signature < 256; ++signature) {
-    bytes.first_low[signature] = static_cast<std::uint8_t>(tables::kTile3Resolved.first_entry[signature]);
-    bytes.first_high[signature] = static_cast<std::uint8_t>(tables::kTile3Resolved.first_entry[signature] >> 8);
-    bytes.ambiguous[signature] = tables::kTile3Resolved.ambiguous_squares[signature];
-    unsigned mask = bytes.ambiguous[signature], gaps = ~mask << 1;
-    for (unsigned step = 0; step < 3; ++step) {
-      unsigned odd = gaps;  // bits that have an odd number of gaps below them
-      for (unsigned shift = 1; shift < 8; shift *= 2) odd ^= odd << shift;
-      const unsigned moved = odd & mask;
-      bytes.moved[step][signature] = static_cast<std::uint8_t>(moved);
-      mask = (mask ^ moved) | moved >> (1u << step);
-      gaps &= ~odd;
-    }
-  }
-  for (unsigned entry = 0; entry < cube_joins().size(); ++entry) {
-    const unsigned pairs = cube_joins()[entry].pairs;
-    auto& set = pairs == 1 ? bytes.with_one_pair : bytes.with_more;
-    if (pairs != 0) set[entry / 8] = static_cast<std::uint8_t>(set[entry / 8] | 1u << entry % 8);
-  }
-  return bytes;
-}
-
-}  // namespace
-
-const CubeBytes& cube_bytes() noexcept {
-  static const CubeBytes bytes = made_cube_bytes();
-  return bytes;
-}
 
 HWY_EXPORT(choose);
 void choose_variants(const std::uint8_t* high, const Variant* variants, CentreRule rule, CubesOfWord& cubes,

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace tegl::detail {
 
@@ -26,7 +25,8 @@ class SimplexContour {
   static constexpr std::size_t kEdges = static_cast<std::size_t>(N * (N + 1) / 2);
   using Simplex = std::array<std::uint8_t, N>;  ///< numbers of edges
 
-  [[nodiscard]] static const SimplexContour& instance();
+  /// Made by the compiler.
+  [[nodiscard]] static const SimplexContour& instance() noexcept;
 
   /// The simplices for a signature (bit i: vertex i is high). Their positive side faces the high vertices, if the
   /// simplex is positive.
@@ -38,9 +38,12 @@ class SimplexContour {
   }
 
  private:
-  SimplexContour();
+  /// Number of simplices for all signatures: of C(N + 1, h) with h high vertices, C(N - 1, h - 1) paths each.
+  static constexpr std::size_t kSimplices = N == 2 ? 6 : N == 3 ? 20 : N == 4 ? 70 : 252;
 
-  std::vector<Simplex> simplices_;
+  constexpr SimplexContour();
+
+  std::array<Simplex, kSimplices> simplices_{};
   std::array<std::uint16_t, (1u << (N + 1)) + 1> first_{};
 };
 

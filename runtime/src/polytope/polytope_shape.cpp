@@ -23,22 +23,11 @@ PolytopeShape::PolytopeShape(Arrays arrays) : arrays_(std::make_shared<const Arr
 PolytopeShape::Arrays PolytopeShape::arrays_of(std::vector<std::uint8_t> rings, std::vector<std::uint16_t> ends) {
   Arrays a{std::move(rings), {}, std::move(ends), {}, {}, 0, false};
   a.ring_edges.resize(a.rings.size());
-  for (std::size_t f = 0; f < a.ends.size(); ++f) {
-    const std::size_t begin = f == 0 ? 0 : a.ends[f - 1], count = a.ends[f] - begin;
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto [v, w] = std::minmax(a.rings[begin + i], a.rings[begin + (i + 1) % count]);
-      const Pair edge{v, w};
-      const auto at = static_cast<std::size_t>(std::find(a.edges.begin(), a.edges.end(), edge) - a.edges.begin());
-      a.ring_edges[begin + i] = static_cast<std::uint8_t>(at);
-      const auto face = static_cast<std::uint8_t>(f);
-      if (at < a.edges.size()) {
-        a.faces_of[at][1] = face;
-        continue;
-      }
-      a.edges.push_back(edge);
-      a.faces_of.push_back({face, face});
-    }
-  }
+  a.edges.resize(a.rings.size());
+  a.faces_of.resize(a.rings.size());
+  const std::size_t count = number_edges(a.rings, a.ends, a.ring_edges, a.edges, a.faces_of);
+  a.edges.resize(count);
+  a.faces_of.resize(count);
   for (const std::uint8_t corner : a.rings) a.corner_count = std::max(a.corner_count, std::size_t{corner} + 1);
   return a;
 }

@@ -3,14 +3,41 @@
 // The faces of polytopes in memory of their own.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "polytope/polytope_faces.hpp"
 
 namespace tegl::detail {
+
+/// Numbers the edges of a polygon or polyhedron in the order in which its rings first pass them; returns how many there
+/// are. Sets `ring_edges`, as many as `rings`, and of `edges` and `faces_of` as many as edges: PolytopeFaces.
+constexpr std::size_t number_edges(std::span<const std::uint8_t> rings, std::span<const std::uint16_t> ends,
+                                   std::span<std::uint8_t> ring_edges, std::span<PolytopeFaces::Pair> edges,
+                                   std::span<PolytopeFaces::Pair> faces_of) {
+  std::size_t number = 0;
+  for (std::size_t f = 0; f < ends.size(); ++f) {
+    const std::size_t begin = f == 0 ? 0 : ends[f - 1], count = ends[f] - begin;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [v, w] = std::minmax(rings[begin + i], rings[begin + (i + 1) % count]);
+      std::size_t at = 0;
+      while (at < number && (edges[at][0] != v || edges[at][1] != w)) ++at;
+      ring_edges[begin + i] = static_cast<std::uint8_t>(at);
+      const auto face = static_cast<std::uint8_t>(f);
+      if (at < number) {
+        faces_of[at][1] = face;
+        continue;
+      }
+      edges[number] = {v, w};
+      faces_of[number++] = {face, face};
+    }
+  }
+  return number;
+}
 
 /// The faces of a polytope, with the memory for them. Copies share it.
 class PolytopeShape : public PolytopeFaces {

@@ -4,10 +4,8 @@
 #include "polytope/solid_facets.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "polytope/polygon_prisms.hpp"
-#include "tegl/generated/cells.hpp"
 
 namespace tegl::detail {
 
@@ -41,20 +39,27 @@ SolidFacet side_of(const PolytopeFaces& shape, std::size_t face) {
   return facet;
 }
 
-/// The faces of a shape with a table, counterclockwise from outside.
-PolytopeShape shape_of_table(tables::CellShape shape) {
-  const tables::ShapeTable& table = tables::shape_table(shape);
-  std::vector<std::uint8_t> rings;
-  std::vector<std::uint16_t> ends;
-  for (const tables::CellFacet& face : std::span(table.facets, table.facet_count)) {
-    std::array<std::uint8_t, 4> ring = {face.corners[0], face.corners[1], face.corners[2], face.corners[3]};
-    if (face.corner_count == 4) std::swap(ring[2], ring[3]);  // around it
-    if (!face.is_inverted) std::reverse(ring.begin(), ring.begin() + face.corner_count);
-    rings.insert(rings.end(), ring.begin(), ring.begin() + face.corner_count);
-    ends.push_back(static_cast<std::uint16_t>(rings.size()));
+/// A polyhedron that the compiler makes.
+template <std::size_t Corners, std::size_t RingCorners, std::size_t Faces>
+struct KnownPolyhedron {
+  std::array<std::uint8_t, RingCorners> rings, ring_edges{};
+  std::array<std::uint16_t, Faces> ends{};
+  std::array<PolytopeFaces::Pair, RingCorners / 2> edges{}, faces_of{};
+
+  /// `rings`: the triangles first; then, if any, quadrilaterals.
+  constexpr explicit KnownPolyhedron(const std::array<std::uint8_t, RingCorners>& rings_, std::size_t triangles = Faces)
+      : rings(rings_) {
+    for (std::size_t f = 0, end = 0; f < Faces; ++f) ends[f] = static_cast<std::uint16_t>(end += f < triangles ? 3 : 4);
+    number_edges(rings, ends, ring_edges, edges, faces_of);
   }
-  return {std::move(rings), std::move(ends)};
-}
+  [[nodiscard]] constexpr PolytopeFaces faces() const { return {Corners, rings, ring_edges, ends, edges, faces_of}; }
+};
+
+// As tables::shape_table, which a test compares.
+constexpr KnownPolyhedron<4, 12, 4> kTetrahedron({2, 1, 0, 0, 1, 3, 3, 2, 0, 1, 2, 3});
+constexpr KnownPolyhedron<5, 16, 5> kPyramid({0, 1, 4, 4, 2, 0, 1, 3, 4, 4, 3, 2, 2, 3, 1, 0}, 4);
+constexpr KnownPolyhedron<6, 24, 8> kOctahedron({4, 2, 0, 1, 2, 4, 0, 3, 4, 4, 3, 1,
+                                                 0, 2, 5, 5, 2, 1, 5, 3, 0, 1, 3, 5});
 
 SolidFacet solid_of(const PolytopeSolids& solids, std::size_t facet) {
   const PolytopeSolids::Solid& solid = solids.solids[facet];
@@ -81,12 +86,18 @@ std::size_t PolytopeFaces::facet_count() const noexcept {
 }
 
 PolytopeFaces faces_of_known(PolyhedronShape shape) {
-  static const PolytopeShape tetrahedron = shape_of_table(tables::CellShape::tetrahedron),
-                             pyramid = shape_of_table(tables::CellShape::pyramid),
-                             octahedron = shape_of_table(tables::CellShape::octahedron);
-  if (shape == PolyhedronShape::wedge || shape == PolyhedronShape::hexahedron)
-    return kPolygonPrisms.over(shape == PolyhedronShape::wedge ? 3 : 4);
-  return shape == PolyhedronShape::tetrahedron ? tetrahedron : shape == PolyhedronShape::pyramid ? pyramid : octahedron;
+  switch (shape) {
+    case PolyhedronShape::tetrahedron:
+      return kTetrahedron.faces();
+    case PolyhedronShape::pyramid:
+      return kPyramid.faces();
+    case PolyhedronShape::wedge:
+      return kPolygonPrisms.over(3);
+    case PolyhedronShape::hexahedron:
+      return kPolygonPrisms.over(4);
+    default:
+      return kOctahedron.faces();
+  }
 }
 
 std::size_t known_corner(PolyhedronShape shape, std::size_t i) noexcept {

@@ -20,6 +20,7 @@
 #include "ambiguity/cube_words.hpp"
 #include "ambiguity/face_estimator.hpp"
 #include "ambiguity/saddle.hpp"
+#include "builder4_lookup.hpp"
 #include "only_targets.hpp"
 #include "tegl/generated/tables.hpp"
 #include "tegl/tile/corners.hpp"
@@ -368,6 +369,28 @@ void expect_variants_of_each_cube() {
 }
 
 TEST(CubeWords, VariantsAreThoseOfEachCubeByItself) { test::with_all_targets(expect_variants_of_each_cube); }
+
+TEST(CubeWords, BytesAreThoseOfTheTables) {
+  const builders::CubeBytes& bytes = builders::kCubeBytes;
+  for (unsigned signature = 0; signature < 256; ++signature) {
+    ASSERT_EQ(tables::kTile3Resolved.first_entry[signature],
+              bytes.first_low[signature] + 256u * bytes.first_high[signature]);
+    ASSERT_EQ(tables::kTile3Resolved.ambiguous_squares[signature], bytes.ambiguous[signature]);
+    for (unsigned high = 0; high < 64; ++high) {  // the steps of cube_words.cpp
+      unsigned bits = high & bytes.ambiguous[signature];
+      for (unsigned step = 0; step < 3; ++step) {
+        const unsigned moved = bits & bytes.moved[step][signature];
+        bits = (bits ^ moved) | moved >> (1u << step);
+      }
+      ASSERT_EQ(ResolvedCubes::entry(signature, high), tables::kTile3Resolved.first_entry[signature] + bits);
+    }
+  }
+  for (unsigned entry = 0; entry < 8 * bytes.with_more.size(); ++entry) {
+    const unsigned pairs = entry < cube_joins().size() ? cube_joins()[entry].pairs : 0;
+    ASSERT_EQ(pairs == 1, (bytes.with_one_pair[entry / 8] >> entry % 8 & 1) != 0);
+    ASSERT_EQ(pairs > 1, (bytes.with_more[entry / 8] >> entry % 8 & 1) != 0);
+  }
+}
 
 /// All signatures and sets of high squares of a cube, eight cubes at a time.
 void expect_lists_of_each_cube(CubeListTable::Content content, Triangulation triangulation) {

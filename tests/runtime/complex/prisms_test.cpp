@@ -13,6 +13,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,9 +27,11 @@
 #include "invariants.hpp"
 #include "polytope/polygon_prisms.hpp"
 #include "polytope/polytopes.hpp"
+#include "polytope/solid_facets.hpp"
 #include "tegl/cell_index.hpp"
 #include "tegl/check.hpp"
 #include "tegl/complex.hpp"
+#include "tegl/generated/cells.hpp"
 #include "tegl/measure.hpp"
 #include "tegl/slice.hpp"
 #include "tegl/tile/facets.hpp"
@@ -182,6 +185,46 @@ TEST(Prisms, TableOfPrismsOverPolygonsHasTheirFaces) {
     }
     // the corners at the base come first, around it, and those above them follow in this order
     for (std::size_t v = 0; v < n; ++v) EXPECT_EQ(v + 2, prism.faces_at(prism.ring_edges(v + 2)[0])[1]) << v;
+  }
+}
+
+/// The lattices of the compiler against the facets of the tables, and their edges against those found step by step.
+TEST(Prisms, KnownPolyhedraAreThoseOfTheTables) {
+  using detail::PolyhedronShape;
+  const std::pair<PolyhedronShape, tables::CellShape> shapes[] = {
+      {PolyhedronShape::tetrahedron, tables::CellShape::tetrahedron},
+      {PolyhedronShape::pyramid, tables::CellShape::pyramid},
+      {PolyhedronShape::octahedron, tables::CellShape::octahedron}};
+  for (const auto& [shape, in_tables] : shapes) {
+    const tables::ShapeTable& table = tables::shape_table(in_tables);
+    SCOPED_TRACE(static_cast<int>(shape));
+    std::vector<std::uint8_t> rings;
+    std::vector<std::uint16_t> ends;
+    std::set<std::array<std::uint8_t, 2>> pairs;
+    for (const tables::CellFacet& face : std::span(table.facets, table.facet_count)) {
+      std::array<std::uint8_t, 4> ring = {face.corners[0], face.corners[1], face.corners[2], face.corners[3]};
+      if (face.corner_count == 4) std::swap(ring[2], ring[3]);  // around it
+      if (!face.is_inverted) std::reverse(ring.begin(), ring.begin() + face.corner_count);
+      rings.insert(rings.end(), ring.begin(), ring.begin() + face.corner_count);
+      ends.push_back(static_cast<std::uint16_t>(rings.size()));
+    }
+    const detail::PolytopeFaces known = detail::faces_of_known(shape);
+    EXPECT_EQ(rings, std::vector(known.rings().begin(), known.rings().end()));
+    EXPECT_EQ(ends, std::vector(known.ends().begin(), known.ends().end()));
+    EXPECT_EQ(3, known.dim());
+    EXPECT_EQ(2u, known.corner_count() + known.face_count() - known.base_edges());
+    EXPECT_EQ(rings.size() / 2, known.edges().size());
+    for (std::size_t f = 0; f < known.face_count(); ++f) {
+      const auto ring = known.ring(f), edges = known.ring_edges(f);
+      for (std::size_t i = 0; i < ring.size(); ++i) {
+        const auto [a, b] = std::minmax(ring[i], ring[(i + 1) % ring.size()]);
+        EXPECT_EQ((std::array{a, b}), known.edges()[edges[i]]);
+        const auto& faces = known.faces_at(edges[i]);
+        EXPECT_TRUE(faces[0] < faces[1] && (faces[0] == f || faces[1] == f));
+        pairs.insert({a, b});
+      }
+    }
+    EXPECT_EQ(known.edges().size(), pairs.size());
   }
 }
 
