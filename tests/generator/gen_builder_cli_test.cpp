@@ -111,6 +111,8 @@ TEST(GenCli, BuilderRefusesOptionsOfOtherCommands) {
   expect_refused({"--dim", "3", "--builder", "--leaf", "edges", "--language", "glsl"}, {"--leaf edges", "table"});
   expect_refused({"--dim", "3", "--builder", "--triangulation", "all"},
                  {"--triangulation all", "barycentric or compact"});
+  expect_refused({"--dim", "3", "--builder", "--triangulation", "fan"},
+                 {"--triangulation fan: expected barycentric or compact;"});
   for (const char* const dim : {"2", "4", "5"})
     expect_refused({"--dim", dim, "--builder", "--triangulation", "barycentric"},
                    {dim, "--triangulation does not go with this builder"});

@@ -102,13 +102,13 @@ rho^3    quarter turn      2  {0, 15}
 
 24 fixed points in all = 4 elements x 6 classes (Burnside's lemma)
 
-high corners  signature  orbit  order  isotropy group
-           0          0      1      4  G
-           1          1      4      1  {1}
-           2          3      4      1  {1}
-           2          6      2      2  {1, rho^2}
-           3          7      4      1  {1}
-           4         15      1      4  G
+high corners  in all  signature  orbit  order  isotropy group
+           0       1          0      1      4  G
+           1       4          1      4      1  {1}
+           2       6          3      4      1  {1}
+           2                  6      2      2  {1, rho^2}
+           3       4          7      4      1  {1}
+           4       1         15      1      4  G
 )");
 }
 

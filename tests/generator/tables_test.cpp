@@ -243,8 +243,10 @@ TEST(Tables, ACompactTriangulationIsRefusedByClassBecauseItDoesNotMoveWithTheSym
 TEST(Manifest, IsWhatTheBuildGenerated) {
   if (std::string(TEGL_TABLE_LAYOUT) != "auto") GTEST_SKIP() << "built with tables of another layout";
   std::string joined;
-  for (const char* const name : {"manifest2", "manifest3", "manifest4", "builder2_manifest", "builder3_manifest",
-                                 "builder4_manifest", "builder5_manifest", "cells_manifest"})
+  for (const char* const name :
+       {"manifest2", "manifest3", "manifest4", "builder2_manifest", "builder3_manifest", "builder4_manifest",
+        "builder5_manifest", "builder2_edges_manifest", "builder3_edges_manifest", "builder3_barycentric_manifest",
+        "builder3_barycentric_edges_manifest", "builder4_edges_manifest", "builder5_edges_manifest", "cells_manifest"})
     joined += (joined.empty() ? "[\n" : ",\n") + text_of(std::string(TEGL_TABLE_DIR) + "/" + name + ".json");
   joined += "]\n";
   EXPECT_EQ(text_of(TEGL_SOURCE_DIR "/generated/MANIFEST.json"), joined)

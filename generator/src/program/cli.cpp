@@ -107,10 +107,12 @@ void set_layout(Options& options, std::string_view given) {
 
 void set_triangulation(Options& options, std::string_view given) {
   using Pair = std::pair<std::string_view, TriangulationChoice>;
-  options.triangulation =
-      choose("--triangulation", given,
-             std::array{Pair{"barycentric", TriangulationChoice::Barycentric},
-                        Pair{"compact", TriangulationChoice::Compact}, Pair{"all", TriangulationChoice::All}});
+  constexpr std::array kChoices{Pair{"barycentric", TriangulationChoice::Barycentric},
+                                Pair{"compact", TriangulationChoice::Compact}, Pair{"all", TriangulationChoice::All}};
+  if (options.command == Command::Builder)  // of one triangulation
+    options.triangulation = choose("--triangulation", given, std::array{kChoices[0], kChoices[1]});
+  else
+    options.triangulation = choose("--triangulation", given, kChoices);
 }
 
 void set_leaf(Options& options, std::string_view given) {
@@ -434,10 +436,6 @@ Options parse(std::span<const std::string_view> arguments) {
   check_dim(options, name);
   if (options.list && options.json) refuse("--list and --json were both given: expected one of them");
   check_certify(options, seen);
-  const bool has_triangulation =
-      std::any_of(seen.begin(), seen.end(), [](const auto* spec) { return spec->name == "--triangulation"; });
-  if (options.command == Command::Builder && has_triangulation && options.triangulation == TriangulationChoice::All)
-    refuse("--triangulation all does not go with --builder: expected barycentric or compact");
   if (options.keeps_same && options.out.empty()) refuse(fmt::format("--keep does not go with {} without --out", name));
   check_tile(options);
   return options;
@@ -534,7 +532,7 @@ options of --out
 
 options of --builder
   --out DIR                         writes the source and a manifest with its digest into DIR; advised for N = 4, whose
-                                    text has 4.6 MB
+                                    text has more than 2 MB
   --keep                            as above, with --out
   --triangulation barycentric|compact
                                     N = 3: polygons coned from their barycentre, or as in the compact tables (default)

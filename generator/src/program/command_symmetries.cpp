@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -96,11 +97,28 @@ void print_cycle_types(const GroupTable& table) {
   }
 }
 
+/// The number of signatures with this many high corners: K in table 6.9. A class with inversion has signatures of two
+/// such numbers, so it is not printed then.
+std::uint64_t signatures_with(int high_corners, int dim) {
+  std::uint64_t result = 1;
+  const auto corners = std::uint64_t{1} << dim;
+  for (std::uint64_t k = 1; k <= static_cast<std::uint64_t>(high_corners); ++k) result = result * (corners + 1 - k) / k;
+  return result;
+}
+
+/// One line for each class. The first one with this many high corners has the number of signatures with as many.
 void print_classes(const GroupTable& table) {
-  fmt::print("high corners  signature  orbit  order  isotropy group\n");
-  for (const ClassRow& row : table.classes)
-    fmt::print("{:>12} {:>10} {:>6} {:>6}  {}\n", row.high_corners, row.signature, row.orbit_length,
-               row.isotropy.size(), isotropy_name(table, row));
+  fmt::print("high corners {}signature  orbit  order  isotropy group\n", table.inversion ? " " : " in all  ");
+  int before = -1;
+  for (const ClassRow& row : table.classes) {
+    fmt::print("{:>12} ", row.high_corners);
+    if (!table.inversion)
+      fmt::print("{:>7} ",
+                 row.high_corners == before ? "" : fmt::to_string(signatures_with(row.high_corners, table.dim)));
+    fmt::print("{:>10} {:>6} {:>6}  {}\n", row.signature, row.orbit_length, row.isotropy.size(),
+               isotropy_name(table, row));
+    before = row.high_corners;
+  }
 }
 
 std::string json_of(const GroupTable& table, std::size_t g) {

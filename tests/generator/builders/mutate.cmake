@@ -2,9 +2,11 @@
 #   cmake -DFOLDER=tables -DNAME=builder3_edges -DFAULT=swapped_map -DIN=.cpp -DFROM=text -DTO=text -DOUT=folder
 #         -P mutate.cmake
 # Replaces the first FROM in FOLDER/NAME<IN> by TO, and writes OUT/FAULT.hpp, OUT/FAULT.cpp and, if the builder has
-# arrays in a file of their own, OUT/FAULT_lists.cpp.
+# arrays in a file of their own, OUT/FAULT_lists.cpp. If IN is .glsl or .wgsl, it writes only OUT/FAULT<IN>.
 set(endings .hpp .cpp)
-if(EXISTS ${FOLDER}/${NAME}_lists.cpp)
+if(IN MATCHES "^\\.(glsl|wgsl)$")
+  set(endings ${IN})
+elseif(EXISTS ${FOLDER}/${NAME}_lists.cpp)
   list(APPEND endings _lists.cpp)
 endif()
 foreach(ending IN LISTS endings)

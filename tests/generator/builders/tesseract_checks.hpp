@@ -24,6 +24,7 @@
 #include "tegl/tile/certificate.hpp"
 #include "tegl/tile/corners.hpp"
 #include "tegl/tile/facets.hpp"
+#include "tesseract_masks.hpp"
 
 namespace tegl::test {
 
@@ -207,36 +208,6 @@ std::vector<std::uint64_t> tesseract_numbers(Builder& builder, const ResolvedKey
   return numbers;
 }
 
-/// The corners of a sign as sets that are connected in the boundary, by edges and by the centres of squares and cubes.
-inline std::vector<std::uint32_t> regions_of_side(const ResolvedKey& key, bool high) {
-  const std::uint32_t corners = high ? key.signature : ~std::uint32_t{key.signature} & 0xffffu;
-  std::vector<std::uint32_t> faces;
-  const auto add_face = [&](unsigned base, unsigned axes) {
-    std::uint32_t face = 0;
-    for (unsigned v = 0; v < 16; ++v)
-      if ((v & ~axes) == base) face |= 1u << v;
-    faces.push_back(face & corners);
-  };
-  for (unsigned axis = 0; axis < 4; ++axis)
-    for (unsigned v = 0; v < 16; ++v)
-      if ((v >> axis & 1u) == 0 && (corners >> v & corners >> (v | 1u << axis) & 1u) != 0) add_face(v, 1u << axis);
-  for (unsigned q = 0; q < 24; ++q)
-    if ((key.squares >> q & 1u) == (high ? 1u : 0u))
-      add_face(builders::kTesseractSquares[q].base, builders::kTesseractSquares[q].axes);
-  for (unsigned f = 0; f < 8; ++f)
-    if (((high ? key.high_cubes & ~unsigned{key.low_cubes} : key.low_cubes) >> f & 1u) != 0)
-      add_face((f % 2) << f / 2, 15u ^ 1u << f / 2);
-  std::vector<std::uint32_t> regions;
-  for (std::uint32_t rest = corners; rest != 0; rest &= ~regions.back()) {
-    std::uint32_t reached = rest & (0u - rest);
-    for (std::uint32_t before = 0; before != reached;) {
-      before = reached;
-      for (const std::uint32_t face : faces) reached |= (face & reached) != 0 ? face : 0u;
-    }
-    regions.push_back(reached);
-  }
-  return regions;
-}
 /// The values that ResolvedTesseract::find accepts for Sigma, by definition: 0 if Sigma is one component. The boundary
 /// is a 3-sphere, in which a connected surface separates two regions.
 inline std::uint32_t known_of_sigma(const ResolvedKey& key) {
@@ -275,6 +246,8 @@ std::string fault_of_tesseract(Builder& builder, GeneralTesseract& general, cons
   for (const auto& [edges, euler] : figures) eulers.insert(euler);
   if (is_by_squares && eulers != GeneralTesseract::eulers(key))
     return text_of(key) + "facets differ from the definition";
+  if (const std::string wrong = TesseractMasks(key, view, triangulation).fault(); !wrong.empty())
+    return text_of(key) + wrong;
   if (tesseract_numbers(builder, key, known_of_sigma(key)) != tesseract_numbers(builder, key))
     return text_of(key) + "another filling if it is known how Sigma is connected";
   return "";
