@@ -250,7 +250,7 @@ class Drawing {
                            : fmt::format("the {} longest of {} tracks", graph_.tracks.size(), all_);
     constexpr std::array kMeasures{"number of points", "length", "area", "volume"};
     if (largest_ > 0 && graph_.space_dim >= 2)
-      what += fmt::format("; thick as the square root of the {}",
+      what += fmt::format("; width proportional to the square root of the {}",
                           kMeasures[static_cast<std::size_t>(graph_.space_dim - 2)]);
     text_ += fmt::format("<text x=\"{}\" y=\"40\">{}</text>\n", kLeft, what);
   }
