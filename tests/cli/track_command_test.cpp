@@ -135,7 +135,7 @@ TEST_F(Track, SaysWhatIsWrong) {
   fails({"--min-lifetime", "-1"}, 2, "--min-lifetime");
   fails({"--min-lifetime", "long"}, 2, "long");
   fails({"--largest", "2", "--samples", "0"}, 2, "--samples");
-  fails({"--largest", "2", "--longest", "1"}, 2, "--largest with --longest; expected one of the two");
+  fails({"--largest", "2", "--longest", "1"}, 2, "--longest with --largest; expected one of the two");
   fails({"-o", path("g.txt")}, 6, "expected .json, .dot, .svg");
   fails({"-o", path("g.ply")}, 6, "cannot hold a 4D contour");
   fails({"-o", path("no/g.svg")}, 6, "does not exist");
