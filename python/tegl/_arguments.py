@@ -145,13 +145,13 @@ class Prepared:
         order: typing.Literal["C", "F"] = "C" if self.is_reversed else "F"  # axis 0 of the library is the fastest
         return {**options, "kernel": [w for one in self.turned(list(kernel)) for w in one.ravel(order=order).tolist()]}
 
-    def library_axis(self, axis: int | str) -> int:
-        number = axis_number(axis, self.names, self.ndim)
+    def library_axis(self, axis: int | str, argument: str = "axis") -> int:
+        number = axis_number(axis, self.names, self.ndim, argument)
         return self.ndim - 1 - number if self.is_reversed else number
 
 
-def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
-    """0 ... ndim - 1 of an axis given by name or number (negative ones count from the end)."""
+def axis_number(axis: int | str, names: Sequence[str], ndim: int, argument: str = "axis") -> int:
+    """0 ... ndim - 1 of an axis given by name or number (negative ones count from the end). `argument`: for errors."""
     if isinstance(axis, str):
         if axis not in names and not any(names):
             raise ValueError(f"no axis is named '{axis}': the axes have no names; expected a number from {-ndim} to "
@@ -161,9 +161,9 @@ def axis_number(axis: int | str, names: Sequence[str], ndim: int) -> int:
         if list(names).count(axis) > 1:
             raise ValueError(f"{list(names).count(axis)} axes are named '{axis}'; expected axis= with the number of one")
         return list(names).index(axis)
-    axis = as_whole("axis", axis)
+    axis = as_whole(argument, axis)
     if not -ndim <= axis < ndim:
-        raise ValueError(f"axis is {axis}; expected {-ndim} to {ndim - 1}")
+        raise ValueError(f"{argument} is {axis}; expected {-ndim} to {ndim - 1}")
     return axis % ndim
 
 
@@ -199,6 +199,14 @@ def as_number(name: str, value: object) -> float:
         except (TypeError, ValueError):
             pass
     raise TypeError(f"{name} is {value!r}; expected a number") from None
+
+
+def as_level(level: object) -> float:
+    """The level of a contour: a finite number."""
+    number = as_number("level", level)
+    if not np.isfinite(number):
+        raise ValueError(f"level is {number}; expected a finite number")
+    return number
 
 
 def as_whole(name: str, value: object, least: int | None = None) -> int:

@@ -167,7 +167,7 @@ def contour(array, level: float | None = None, *, label: float | None = None, sp
     if samples == "file" and not isinstance(array, Image):
         raise ValueError(f"samples is 'file' for a {type(array).__name__}; expected an image from tegl.read")
     of_cells = samples == "cells" or (samples == "file" and array.samples_are_cells)
-    level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+    level, allow_empty = _arguments.as_level(level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     periodic = _periods.given_or_none(periodic)
     of_samples, no_places = ([], []) if curved is None else _curved.coordinates_of(curved, prepared)
@@ -244,7 +244,7 @@ def contour_facets(array, level: float, *, spacing=None, origin=None, coords=Non
     if on and simplices:
         raise ValueError(f"lattice '{on}' with division; expected one of the two")
     is_double = _arguments.is_double(dtype, prepared)
-    level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+    level, allow_empty = _arguments.as_level(level), _arguments.as_bool("allow_empty", allow_empty)
     options = prepared.library_options(options)
     periodic = _periods.given_or_none(periodic)
     with prepared.terms():
@@ -278,7 +278,7 @@ def count(array, level: float, *, spacing=None, origin=None, coords=None, affine
     prepared = _arguments.prepare(array, spacing=spacing, origin=origin, coords=coords, affine=affine, mask=mask,
                                   axis_names=axis_names, axis_units=axis_units, time_axis=time_axis, allow_curved=True,
                                   allow_lattice=True)
-    level = _arguments.as_number("level", level)
+    level = _arguments.as_level(level)
     options = prepared.library_options(options)
     lattice = _lattice_of(array, lattice)
     periodic = _periods.given_or_none(periodic)
@@ -364,7 +364,7 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
         return contour_or_array._cut(at, axis, normal, offset, allow_empty, threads, progress, more)
     if level is None:
         raise ValueError("no level for the cut of an array; expected tegl.slice(array, level, at=...)")
-    return _cut_image(contour_or_array, _arguments.as_number("level", level), at, axis, normal, offset, allow_empty,
+    return _cut_image(contour_or_array, _arguments.as_level(level), at, axis, normal, offset, allow_empty,
                       threads, progress, more)
 
 

@@ -81,7 +81,7 @@ class Index:
         """What `tegl.contour` of the array gives, byte by byte. Options as there: triangulation, normals, ..."""
         is_double, chosen = _arguments.is_double(dtype, self._prepared), self._prepared.library_options(
             _arguments.extract_options(**options))
-        level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+        level, allow_empty = _arguments.as_level(level), _arguments.as_bool("allow_empty", allow_empty)
         with self._prepared.terms():
             core = self._core.contour(level, is_double, chosen, progress)
         if not allow_empty and not len(core.simplices):
@@ -92,7 +92,7 @@ class Index:
         """The lowest corners of the tiles that the contour passes: #T x N indices, in the order of the array's axes. None
         for a level outside of the array's values."""
         sizes = [size - 1 for size in self._prepared.image.array.shape]
-        found = self._core.find(_arguments.as_number("level", level))
+        found = self._core.find(_arguments.as_level(level))
         corners = np.column_stack(np.unravel_index(found, sizes, order="F")) if len(found) else \
             np.empty((0, len(sizes)), dtype=np.intp)
         return corners[:, ::-1] if self._prepared.is_reversed else corners
@@ -117,7 +117,7 @@ class Index:
         numbers = _arguments.as_numbers("point", point, "its coordinates along the array's axes")
         is_double, chosen = _arguments.is_double(dtype, self._prepared), self._prepared.library_options(
             _arguments.extract_options(**options))
-        level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+        level, allow_empty = _arguments.as_level(level), _arguments.as_bool("allow_empty", allow_empty)
         is_reported = _arguments.as_bool("return_report", return_report)
         with self._prepared.terms():
             core, report = _tegl.extract_component(self._prepared.image, level, self._prepared.turned(numbers), is_double,

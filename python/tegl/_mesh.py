@@ -156,7 +156,7 @@ class MeshIndex:
         `attributes` is a dict of names and arrays.
         """
         chosen = _options_of(**options)
-        level, allow_empty = _arguments.as_number("level", level), _arguments.as_bool("allow_empty", allow_empty)
+        level, allow_empty = _arguments.as_level(level), _arguments.as_bool("allow_empty", allow_empty)
         others = _attributes_of(attributes, None, self._shape)
         core = self._core.contour(level, _is_double(dtype), chosen, others, progress)
         if not allow_empty and not len(core.simplices):
@@ -167,7 +167,7 @@ class MeshIndex:
 def _level_of(level: float | None) -> float:
     if level is None:
         raise TypeError("level is missing; expected points, cells, values and level, or a mesh and level")
-    return _arguments.as_number("level", level)
+    return _arguments.as_level(level)
 
 
 def _attributes_of(attributes, mesh, shape: tuple[int, ...]) -> list[tuple[str, np.ndarray]]:

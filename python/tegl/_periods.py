@@ -47,7 +47,7 @@ def _axis(axis: int | str, prepared: _arguments.Prepared,
     """The library's axis of a name or number. Names of curved longitudes, by their unit, stand for the axis along which
     these run or grow most, and so do "lon" and "longitude" if only one axis has longitudes, or runs around the globe."""
     if not isinstance(axis, str):
-        return prepared.library_axis(axis)
+        return prepared.library_axis(axis, "periodic")
     longitudes = [(one[0], _tegl.axis_of_longitudes(prepared.image, [one])) for one in curved
                   if _tegl.is_longitude_unit(one[4])]
     if axis not in prepared.names:

@@ -79,7 +79,7 @@ def _checked(volume, level, spacing, step_size, method, mask) -> tuple[np.ndarra
     if level is None:
         level = 0.5 * (float(least) + float(greatest))
     else:
-        level = _arguments.as_number("level", level)
+        level = _arguments.as_level(level)
         if not least <= level <= greatest:
             raise ValueError("Surface level must be within volume data range.")
     if len(spacing) != 3:

@@ -375,7 +375,7 @@ def test_tables_of_points_are_read(tmp_path):
     mesh = tegl.read_mesh(table, "f")
     expected = tegl.contour_points(mesh.points, mesh.values, 0.2)
     assert np.array_equal(mesh.contour(0.2).vertices, expected.vertices)
-    with pytest.raises(ValueError, match="f, g; expected a choice"):
+    with pytest.raises(ValueError, match="2 columns, and none chosen; expected one of f, g"):
         tegl.read_mesh(table)
     table.write_text("x,y,f\n0,0,1\n1,zero,2\n")
     with pytest.raises(ValueError, match="line 3, column 2"):

@@ -187,7 +187,7 @@ TEST_F(Check, RefusesBadOptionsOfIntersections) {
   EXPECT_EQ(run_tegl({"check", file, "--intersections", "--tile-origin", "1"}).exit, 2) << "without --tile";
   EXPECT_EQ(run_tegl({"check", file, "--intersections", "--places", "-1"}).exit, 2);
   EXPECT_THAT(run_tegl({"check", file, "--intersections", "--threads", "5000"}).err,
-              HasSubstr("--threads: '5000'; expected a whole number from 0 to 4096"));
+              HasSubstr("--threads is '5000'; expected a whole number from 0 to 4096"));
   const RunResult two = run_tegl({"check", file, "--intersections", "--tile", "1,2"});
   EXPECT_EQ(two.exit, 2);
   EXPECT_THAT(two.err, HasSubstr("--tile 1,2 has 2 numbers; expected one, or 3, one for each axis"));

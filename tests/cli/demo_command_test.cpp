@@ -30,8 +30,8 @@ TEST_F(Demo, IsAReportWithAMapWhereThereIsNoTerminal) {
 TEST_F(Demo, TellsTheSameContourAndCutsAsTheCommands) {
   const RunResult demo = run_tegl({"demo", "--json"});
   ASSERT_EQ(demo.exit, 0) << demo.err;
-  const RunResult contour = run_tegl({"contour", kOcean, "--iso", "20", "--triangulation", "barycentric", "--no-check",
-                                      "-o", path("ocean.vtkhdf"), "--json"});
+  const RunResult contour =
+      run_tegl({"contour", kOcean, "--iso", "20", "--no-check", "-o", path("ocean.vtkhdf"), "--json"});
   EXPECT_EQ(demo.json()["simplices"], contour.json()["simplices"]);
   const RunResult cut = run_tegl({"slice", path("ocean.vtkhdf"), "--at", "t=4.25", "-o", path("cut.ply"), "--json"});
   EXPECT_EQ(demo.json()["cuts"][1]["t"], 4.25);

@@ -94,7 +94,7 @@ TEST_F(Errors, WrongUsageExitsWith2) {
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--colour"}, {"--colour", "tegl contour --help"});
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--triangulation", "fine"}, {"fine", "compact"});
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--ambiguity", "median"},
-                 {"median", "low,high,mean,saddle,squares,decider"});
+                 {"--ambiguity is 'median'; expected one of low, high, mean, saddle, squares, decider"});
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--precision", "half"}, {"half", "double"});
   expect_failure(2, {"contour", ball_file(), "--iso", "0", "-o", out, "--gradient-direction", "up"}, {"up", "descent"});
   expect_failure(2, {"slice", ball_file(), "--iso", "0", "-o", out, "--at", "7.3"}, {"7.3", "t=7.3"});
@@ -127,11 +127,11 @@ TEST_F(Errors, ListsHaveNoEmptyWords) {
   const std::string out = path("out.vtkhdf");
   for (const std::string list : {",", "x,", ",x", "x,,y", ""})
     expect_failure(2, {"contour", ball_file(), "--iso", "0", "--periodic", list, "-o", out},
-                   {"--periodic: '" + list + "'", "none of them empty"});
+                   {"--periodic is '" + list + "'", "none of them empty"});
   for (const std::string list : {",", "2,", "2,,1"})
     expect_failure(2, {"index", ball_file(), "--method", "seed-set", "--scan-order", list, "-o", out},
-                   {"--scan-order: '" + list + "'", "none of them empty"});
-  expect_failure(2, {"check", ball_file(), "--require", "closed,"}, {"--require: 'closed,'", "none of them empty"});
+                   {"--scan-order is '" + list + "'", "none of them empty"});
+  expect_failure(2, {"check", ball_file(), "--require", "closed,"}, {"--require is 'closed,'", "none of them empty"});
   for (const std::string list : {",", "0,", "0,,1"})
     expect_failure(2, {"contour", ball_file(), "--iso", list, "-o", out}, {"--iso is ''", "expected a number"});
   // lists that are given twice are joined
@@ -457,8 +457,53 @@ TEST_F(Errors, AnOldOutputSurvivesAFailure) {
 TEST_F(Errors, KindsOfNormalsThatThereAreNotAreNamed) {
   const RunResult run = run_tegl({"contour", "image.nc", "--normals", "wrong", "--iso", "0", "-o", path("a.ply")});
   EXPECT_EQ(run.exit, 2);
-  EXPECT_THAT(run.err, HasSubstr("--normals wrong: expected gradient, sobel, prewitt, context, forward, "
-                                 "backward, geometric or flat"));
+  EXPECT_THAT(run.err, HasSubstr("--normals is 'wrong'; expected one of gradient, sobel, prewitt, context, forward, "
+                                 "backward, geometric, flat"));
+  EXPECT_THAT(run_tegl({"contour", ball_file(), "--normals=", "--iso", "0", "-o", path("a.ply")}).err,
+              HasSubstr("--normals is ''; expected one of gradient, sobel"));
+}
+
+TEST_F(Errors, MessagesAboutOptionsHaveOneForm) {
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& text) {
+    std::vector<std::string> arguments = {"contour", ball_file(), "-o", path("a.ply")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    expect_failure(2, arguments, {"tegl: " + text, " (see tegl contour --help)"});
+  };
+  refused({"--iso", "0", "--raw", "3x3"}, "--raw without --raw-type; expected both");
+  refused({"--iso", "0", "--threads", "-1"}, "--threads is '-1'; expected a whole number from 0 to 4096");
+  refused({"--iso", "0", "--precision", "half"}, "--precision is 'half'; expected one of float, double");
+  refused({"--iso", "0", "--precision"}, "--precision has no value; expected one of float, double");
+  refused({"--iso", "0", "--close=maybe"}, "--close is 'maybe'; expected no value");
+  refused({"--iso", "0", "-o", path("b.ply")}, "--output is given more than once; expected it once");
+  expect_failure(2, {"contour", ball_file(), "--iso", "0"}, {"--output is missing; expected --output FILE"});
+  expect_failure(2, {"contour", "--iso", "0", "-o", path("a.ply")}, {"FILE is missing; expected the image"});
+  expect_failure(2, {"demo", "film"}, {"unexpected argument 'film'; expected none"});
+  expect_failure(2, {}, {"no command; expected info, contour, slice"});
+  expect_failure(2, {"simplify", ball_file(), "--iso", "0", "--ratio", "10%", "-o", path("a.ply")},
+                 {"--ratio is '10%'; expected a number from 0 to 1"});
+  expect_failure(2, {"simplify", ball_file(), "--iso", "0", "--ratio", "7.3", "-o", path("a.ply")},
+                 {"--ratio is '7.3'; expected a number from 0 to 1"});
+}
+
+TEST_F(Errors, FilesOfTheOtherKindAreNamed) {
+  ASSERT_EQ(run_tegl({"contour", ball_file(), "--iso", "0", "-o", path("saved.ply"), "-q"}).exit, 0);
+  expect_failure(4, {"contour", path("saved.ply"), "--iso", "0", "-o", path("a.ply")},
+                 {"saved.ply: holds a mesh, such as a saved contour; expected an image"});
+  expect_failure(4, {"check", ball_file()}, {"ball.nrrd: no saved contour, by its name; expected .ply"});
+  const std::string table = write("two.csv", "x,y,v,w\n0,0,0,1\n1,0,1,1\n0,1,2,1\n");
+  expect_failure(2, {"contour", table, "--iso", "0.5", "-o", path("a.ply")},
+                 {"2 columns, and none chosen; expected one of v, w (choose it with --var)"});
+}
+
+TEST_F(Errors, RulesOfAmbiguousCellsAreRefusedWhereThereAreNone) {
+  if (!has_delaunay()) GTEST_SKIP() << "built without Qhull";
+  const std::string table = write("points.csv", "x,y,v\n0,0,0\n1,0,1\n0,1,2\n");
+  for (const char* const command : {"contour", "measure"}) {
+    std::vector<std::string> arguments = {command, table, "--iso", "1.5", "--ambiguity", "saddle"};
+    if (command == std::string("contour")) arguments.insert(arguments.end(), {"-o", path("a.ply")});
+    expect_failure(2, arguments, {"--ambiguity with a mesh of triangles, none of which can be ambiguous; expected "});
+  }
+  EXPECT_EQ(run_tegl({"measure", table, "--iso", "1.5", "--ambiguity", "low"}).exit, 0);
 }
 
 TEST_F(Errors, NamesOfFilesThatLookLikeOptionsAreRefused) {

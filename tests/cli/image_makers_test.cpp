@@ -383,7 +383,8 @@ TEST_F(ImageMakers, SamplesHaveTheirRangeAndSizes) {
 TEST_F(ImageMakers, NameWhatIsWrong) {
   const std::string picture = write("a.nrrd", nrrd_bytes(noise({4, 4}, 1)));
   const std::string out = path("out.nrrd");
-  expect_refused({"scale-space", picture, "--sigmas", "2:1:4", "-o", out}, "4 scales from 2 to 1; expected", 2);
+  expect_refused({"scale-space", picture, "--sigmas", "2:1:4", "-o", out},
+                 "--sigmas 2:1:4: 4 scales from 2 to 1; expected", 2);
   expect_refused({"scale-space", picture, "--sigmas", "1:2:1.5", "-o", out}, "has the count 1.5", 2);
   expect_refused({"scale-space", picture, "--sigmas", "2,1", "-o", out}, "expected ascending scales", 2);
   expect_refused({"scale-space", picture, "--sigmas", "1,2,3", "-o", out}, "has uneven steps, which NRRD cannot hold",

@@ -74,7 +74,10 @@ TEST_F(Pick, RefusesWrongUsage) {
   EXPECT_THAT(outside.err, HasSubstr("(9, 9, 20) is not in the image; expected one from (0, 0, 0) to (39, 19, 19)"));
   const RunResult indexed = pick("9,9,9", {"--index", file()});
   EXPECT_EQ(indexed.exit, 2);
-  EXPECT_THAT(indexed.err, HasSubstr("--pick with --index"));
+  EXPECT_THAT(indexed.err, HasSubstr("--pick with --index; expected one of the two"));
+  EXPECT_THAT(pick("9,9,9", {"--facets"}).err, HasSubstr("--pick with --facets; expected one of the two"));
+  EXPECT_THAT(pick("9,9,9", {"--stream"}).err, HasSubstr("--pick with --stream; expected one of the two"));
+  EXPECT_THAT(pick("9,a,9").err, HasSubstr("--pick is 'a'; expected numbers, one for each axis"));
 }
 
 /// On a lattice the whole contour is made.

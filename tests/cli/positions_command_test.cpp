@@ -93,7 +93,14 @@ TEST_F(PositionsCommand, MasksNeedNoIsovalueAndLabelsAreMasks) {
   const auto tenths = [&](const std::vector<double>& x) { return labels(x) / 10; };
   const std::string of_reals = write("reals.nii", nifti_bytes(sample({24, 22, 23}, tenths), {1, 1, 1}));
   EXPECT_EQ(run_tegl({"contour", of_reals, "--label", "0.7", "-o", path("c.ply")}).exit, 0);
+  const RunResult absent = run_tegl({"contour", image, "--label", "6.5", "-o", path("d.ply")});
+  EXPECT_EQ(absent.exit, 5);
+  EXPECT_THAT(absent.err,
+              testing::ContainsRegex("--label 6.5: no sample has this value; expected one that samples have, "
+                                     "such as [0-6] or 7"));
   EXPECT_EQ(run_tegl({"contour", image, "--label", "8", "-o", path("d.ply")}).exit, 5);
+  const RunResult above = run_tegl({"contour", image, "--label", "10", "-o", path("d.ply")});
+  EXPECT_THAT(above.err, testing::HasSubstr("expected one that samples have: the greatest is 9"));
   EXPECT_EQ(run_tegl({"contour", image, "--label", "8", "--allow-empty", "-o", path("e.ply")}).exit, 0);
   EXPECT_EQ(run_tegl({"contour", image, "--label", "7", "--iso", "1", "-o", path("d.ply")}).exit, 2);
   EXPECT_EQ(run_tegl({"contour", image, "--label", "x", "-o", path("d.ply")}).exit, 2);

@@ -88,7 +88,9 @@ TEST_F(Project, RefusesWhatItCannotDo) {
                                                {"--eye", "a"},
                                                {"--as", "cuts", "--eye", "1"},
                                                {"--as", "shadow"},
-                                               {"--count", "0"}}) {
+                                               {"--count", "0"},
+                                               {"--count", "3"},
+                                               {"--as", "tetrahedra", "--count", "3"}}) {
     std::vector<std::string> arguments = {"project", file(), "--iso", "0", "-o", path("a.ply")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const RunResult run = run_tegl(arguments);

@@ -84,6 +84,31 @@ TEST_F(Raw, HasTheSpacingOriginNamesAndUnitsOfItsAxes) {
               run_tegl({"measure", path("plain_raw.ply"), "--json"}).json()["size"].get<double>(), 1e-6);
 }
 
+TEST_F(Raw, RemarksOnBytesAfterTheLastSample) {
+  // without the last layer: 12 x 10 floats are left over
+  const std::string remark = raw_ + ": 480 of 4320 bytes follow the last of 12 x 10 x 8 samples of type float";
+  const std::vector<std::string> layout = {"--raw", "12x10x8", "--raw-type", "float"};
+  const auto run = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), layout.begin(), layout.end());
+    return run_tegl(arguments);
+  };
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"info", raw_},
+                                             {"contour", raw_, "--iso", "0", "-o", path("short.ply")},
+                                             {"contour", raw_, "--iso", "0", "-o", path("streamed.vtkhdf"), "--stream"},
+                                             {"slice", raw_, "--iso", "0", "--at", "z=4", "-o", path("slice.ply")},
+                                             {"measure", raw_, "--iso", "0"},
+                                             {"components", raw_, "--iso", "0"},
+                                             {"index", raw_, "-o", path("a.tindex")}}) {
+    const RunResult short_of_layer = run(arguments);
+    EXPECT_EQ(short_of_layer.exit, 0) << short_of_layer.err;
+    EXPECT_THAT(short_of_layer.err, HasSubstr(remark)) << arguments[0];
+  }
+  EXPECT_EQ(run({"info", raw_, "--json"}).json()["remarks"][0], remark + ", and are ignored");
+  EXPECT_EQ(run_tegl({"info", raw_, "--raw", "12x10x9", "--raw-type", "float"}).err, "") << "a file that fits";
+  EXPECT_EQ(run({"info", raw_, "--raw-offset", "480"}).err, "") << "bytes before the first sample are skipped";
+}
+
 TEST_F(Raw, NamesWhatDoesNotFitItsSizes) {
   const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& text) {
     const RunResult run = contour("out.ply", more);
@@ -98,7 +123,7 @@ TEST_F(Raw, NamesWhatDoesNotFitItsSizes) {
   expect_refused({"--axis-names", "a,b"}, "--axis-names a,b has 2 parts");
   expect_refused({"--axis-names", "a,b,A"}, "--axis-names has the axis A twice");
   EXPECT_THAT(run_tegl({"contour", nrrd_, "--iso", "0", "--spacing", "2", "-o", path("out.ply")}).err,
-              HasSubstr("--spacing requires --raw"));
+              HasSubstr("--spacing without --raw; expected both"));
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ TEST_F(Track, CountsThatAreNoneAreNamed) {
   for (const auto& [option, value] : {std::pair{"--samples", "-2"}, {"--longest", "0"}, {"--largest", "1e3"}}) {
     const RunResult run = run_tegl({"track", image(), "--iso", "0", option, value});
     EXPECT_EQ(run.exit, 2);
-    EXPECT_THAT(run.err, HasSubstr(std::string(option) + ": '" + value + "'; expected a whole number from "));
+    EXPECT_THAT(run.err, HasSubstr(std::string(option) + " is '" + value + "'; expected a whole number from "));
   }
   const RunResult twice = run_tegl({"track", image(), "--iso", "0", "-o", path("g.svg"), "-o", path("g.svg")});
   EXPECT_EQ(twice.exit, 2);
@@ -109,6 +109,21 @@ TEST_F(Track, LeavesOutAndSelects) {
   EXPECT_EQ(tracks({"--longest", "9"}), 2u);
 }
 
+TEST_F(Track, ListsAsManyTracksAsWereRequested) {
+  const auto listed = [](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"track", TEGL_SOURCE_DIR "/examples/data/ocean_temperature.nc", "--iso",
+                                          "20"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    std::istringstream report(run_tegl(arguments).out);
+    std::size_t count = 0;
+    for (std::string line; std::getline(report, line);) count += line.find(" up to ") != std::string::npos ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(listed({}), 8u);
+  EXPECT_EQ(listed({"--longest", "10"}), 10u);
+  EXPECT_EQ(listed({"--largest", "3"}), 3u);
+}
+
 TEST_F(Track, SaysWhatIsWrong) {
   const std::string file = image();
   const auto fails = [&](std::vector<std::string> options, int exit, const std::string& message) {
@@ -120,7 +135,7 @@ TEST_F(Track, SaysWhatIsWrong) {
   fails({"--min-lifetime", "-1"}, 2, "--min-lifetime");
   fails({"--min-lifetime", "long"}, 2, "long");
   fails({"--largest", "2", "--samples", "0"}, 2, "--samples");
-  fails({"--largest", "2", "--longest", "1"}, 2, "--l");
+  fails({"--largest", "2", "--longest", "1"}, 2, "--longest with --largest; expected one of the two");
   fails({"-o", path("g.txt")}, 6, "expected .json, .dot, .svg");
   fails({"-o", path("g.ply")}, 6, "cannot hold a 4D contour");
   fails({"-o", path("no/g.svg")}, 6, "does not exist");

@@ -252,12 +252,16 @@ TEST_F(View, RefusesWhatItCannotDoAndLeavesNothing) {
   EXPECT_EQ(view(file(), "/dev/full/page.html").exit, 6);
   EXPECT_EQ(run_tegl({"view", file(), "--iso", "1000", "-o", path("a.html")}).exit, 5);
   EXPECT_EQ(run_tegl({"view", file(), "-o", path("a.html")}).exit, 2);
+  const std::string still = write("ball.nrrd", nrrd_bytes(ball({8, 8, 8}, 2.2)));
+  const RunResult tracks = run_tegl({"view", still, "--iso", "0", "--tracks", "5", "-o", path("a.html")});
+  EXPECT_EQ(tracks.exit, 2);
+  EXPECT_THAT(tracks.err, HasSubstr("--tracks 5 with a contour in 3D; expected it with one in 4D"));
   // Messages about the second file contain its name.
   const std::string flat = write("zero.nrrd", nrrd_bytes(sample({4, 4, 4}, [](const auto&) { return 5.0; })));
   const RunResult second = run_tegl({"view", file(), flat, "--iso", "0", "-o", path("a.html")});
   EXPECT_EQ(second.exit, 5);
   EXPECT_THAT(second.err, HasSubstr("zero.nrrd: all values are 5"));
-  EXPECT_THAT(files(), ElementsAre("balls.nii", "probe.html", "zero.nrrd"));
+  EXPECT_THAT(files(), ElementsAre("ball.nrrd", "balls.nii", "probe.html", "zero.nrrd"));
 }
 
 }  // namespace

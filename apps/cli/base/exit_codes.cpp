@@ -34,7 +34,7 @@ std::string exit_code_help() {
          "  2    wrong usage: an option, a value or a variable that does not exist\n"
          "  3    the input does not exist or cannot be read\n"
          "  4    the input is damaged or not supported\n"
-         "  5    nothing to contour: isovalue or cut outside of the data, all samples missing, no tiles\n"
+         "  5    nothing to contour: isovalue or cut outside of the data, all samples missing, an axis of one sample\n"
          "  6    the output cannot be written, or its format cannot hold the result\n"
          "  70   internal error, or out of memory\n"
          "  130  cancelled (Ctrl-C); 129, 141, 143: ended by SIGHUP, SIGPIPE, SIGTERM\n"

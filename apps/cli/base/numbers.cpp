@@ -40,10 +40,10 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
-double parse_finite(std::string_view option, std::string_view text) {
+double parse_finite(std::string_view option, std::string_view text, std::string_view expected) {
   const std::optional<double> value = parse_number(text);
   if (!value) {
-    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected a number such as 7.3", option, text));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected {}", option, text, expected));
   }
   if (!std::isfinite(*value)) {
     throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected a finite number", option, text));

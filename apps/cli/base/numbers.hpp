@@ -18,8 +18,9 @@ std::optional<double> parse_number(std::string_view text);
 /// Splits a text at separators.
 std::vector<std::string_view> split(std::string_view text, char separator);
 
-/// The finite number in the value of option `option`. Throws InvalidArgument with `text`.
-double parse_finite(std::string_view option, std::string_view text);
+/// The finite number in the value of option `option`. Throws InvalidArgument with `text`, and with what is expected if
+/// it is no number.
+double parse_finite(std::string_view option, std::string_view text, std::string_view expected = "a number");
 
 /// Validates counts: digits only, `least` to `most`. (CLI11 would read a minus sign as a huge number.)
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = 1000000000);

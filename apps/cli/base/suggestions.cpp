@@ -48,6 +48,13 @@ const CLI::Option* option_called(const CLI::App& command, std::string_view name)
   return nullptr;
 }
 
+std::vector<std::string> names_of_commands(const CLI::App& program) {
+  std::vector<std::string> names;
+  for (const CLI::App* const command : program.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
 bool looks_like_option(std::string_view argument) {
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   return argument.size() > 1 && argument[0] == '-' &&
@@ -98,16 +105,18 @@ std::string unknown_option_text(const CLI::App& command, const std::string& opti
   return fmt::format("unknown option {}{}", option, nearest ? fmt::format(" (did you mean {}?)", *nearest) : "");
 }
 
-std::string unknown_command_text(const CLI::App& program, std::string_view word) {
-  std::vector<std::string> names;
-  for (const CLI::App* const command : program.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  if (const auto nearest = nearest_word(word, names))
-    return fmt::format("there is no command '{}' (did you mean {}?)", word, *nearest);
+std::string command_list(const CLI::App& program) {
+  const std::vector<std::string> names = names_of_commands(program);
   std::string all;
   for (std::size_t i = 0; i < names.size(); ++i)
     all += (i == 0 ? "" : i + 1 == names.size() ? " or " : ", ") + names[i];
-  return fmt::format("there is no command '{}'; expected {}", word, all);
+  return all;
+}
+
+std::string unknown_command_text(const CLI::App& program, std::string_view word) {
+  if (const auto nearest = nearest_word(word, names_of_commands(program)))
+    return fmt::format("there is no command '{}' (did you mean {}?)", word, *nearest);
+  return fmt::format("there is no command '{}'; expected {}", word, command_list(program));
 }
 
 }  // namespace tegl::cli

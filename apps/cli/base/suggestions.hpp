@@ -22,6 +22,9 @@ std::optional<std::string> unknown_option(const CLI::App& command, const std::ve
 /// "unknown option --isovalue (did you mean --iso?)".
 std::string unknown_option_text(const CLI::App& command, const std::string& option);
 
+/// All commands: "info, contour or slice".
+std::string command_list(const CLI::App& program);
+
 /// "there is no command 'contuor' (did you mean contour?)"; without a similar command, a list of all.
 std::string unknown_command_text(const CLI::App& program, std::string_view word);
 

@@ -47,7 +47,8 @@ constexpr const char* kContourExamples =
     "  tegl contour ocean.nc --var TEMP --iso 20 --facets -o polyhedra.vtu\n"
     "  tegl contour cavity.pvd --var p --iso 0 -o p.vtkhdf               (a mesh over time)\n"
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
-    "A file of 2 to 5 dimensions gives segments, triangles, tetrahedra or 4-simplices: 'tegl slice' cuts the last two.";
+    "A file of 2 to 5 dimensions gives segments, triangles, tetrahedra or 4-simplices.\n"
+    "'tegl slice' cuts all except segments.";
 
 class ContourCommand final : public Command {
  public:
@@ -263,7 +264,7 @@ class ContourCommand final : public Command {
       result.variable = input.mesh.variable;
       result.image_dim = input.space_dim();
       result.wording.no_size = kNoSizeInMeshes;
-      require_mesh_contour(input.mesh, *result.isovalue, given_.extraction.allows_empty());
+      require_mesh_contour(input.mesh, *result.isovalue, given_.extraction.allows_empty(), options.ambiguity);
     }
     results.front().seconds.read = watch.lap();
     WrittenFiles written;

@@ -89,7 +89,10 @@ bool ContourArguments::takes_stored_integers(const ExtractOptions& options) cons
 std::vector<double> ContourArguments::picked_point() const {
   if (!picks()) return {};
   if (is_streamed() || !index.empty() || facets)
-    throw Error(ErrorCode::InvalidArgument, "--pick with --index, --facets or --stream; expected it without them");
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("--pick with {}; expected one of the two", !index.empty() ? "--index"
+                                                                       : facets       ? "--facets"
+                                                                                      : "--stream"));
   return parse_list("--pick", pick);
 }
 

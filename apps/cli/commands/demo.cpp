@@ -205,7 +205,6 @@ class DemoCommand final : public Command {
     // contour
     Stopwatch watch;
     ExtractOptions options;
-    options.triangulation = Triangulation::barycentric;
     options.work.progress = bar.stage("contour");
     const Contour<4, double> contour = extract<double>(image->view(), kIsovalue, options);
     const double seconds = watch.lap();

@@ -259,7 +259,7 @@ std::vector<FacetsResult> write_mesh_facets(const MeshInput& input, const InputF
     result.isovalue = work.isovalue = isovalues[i].value;
     result.seconds.read = std::exchange(read_seconds, 0.0);
     require_output_holds_facets(result.output, result.image_dim);
-    require_mesh_contour(input.mesh, work.isovalue, work.allows_empty);
+    require_mesh_contour(input.mesh, work.isovalue, work.allows_empty, work.options.ambiguity);
     work.options.work.progress = bar.stage("facets");
     const auto set_axes = [&](auto& facets) {
       const std::vector<std::string>& names = input.mesh.axis_names;

@@ -157,6 +157,10 @@ class MeasureCommand final : public ContourInputCommand {
       at.push_back(i + 1 == samples_ ? extent.last
                                      : extent.first + (extent.last - extent.first) * static_cast<double>(i) /
                                                           static_cast<double>(samples_ - 1));
+    if (samples_ > 0) {  // with --at too, as one table of ascending times
+      std::sort(at.begin(), at.end());
+      at.erase(std::unique(at.begin(), at.end()), at.end());
+    }
     std::vector<double> places = at;
     for (double& place : places) place = within_period(axis, place);
     const std::span<const double> vertices(contour.vertices.empty() ? nullptr : contour.vertices.front().data(),

@@ -34,8 +34,9 @@ void ScaleSpaceArguments::require() {
   if (!are_given()) return;
   sigmas_ = parse_sigmas("--scale-space", text_);
   if (sigmas_.size() < 2)
-    throw Error(ErrorCode::InvalidArgument,
-                fmt::format("--scale-space {} has one scale; expected at least two, as in 0.5:8:24", text_));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("--scale-space {} has one scale; expected at least two, as in "
+                                                        "0.5:8:24: the scale is an axis of the contour",
+                                                        text_));
 }
 
 void ScaleSpaceArguments::apply(std::variant<ReadImageResult, ReadImage5dResult>& input, unsigned threads,

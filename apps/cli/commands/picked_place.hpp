@@ -84,7 +84,7 @@ void require_in_box(const Grid<N>& grid, Lattice lattice, const std::vector<Peri
   for (int a = 0; a < N; ++a)
     if (point[a] < lowest[a] || point[a] > highest[a])
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("the point ({}) is not in the image; expected one from ({}) to ({})",
+                  fmt::format("the point ({}) is not in the image; expected one from ({:.6g}) to ({:.6g})",
                               fmt::join(point, ", "), fmt::join(lowest, ", "), fmt::join(highest, ", ")));
 }
 

@@ -187,6 +187,9 @@ class ProjectCommand final : public ContourInputCommand {
 
   [[nodiscard]] Projection projection_from_options() const {
     Projection projection;
+    if (kind_ != "cuts" && app().count("--count") > 0)
+      throw Error(ErrorCode::InvalidArgument,
+                  fmt::format("--count {} with --as {}; expected it with --as cuts", count_, kind_));
     if (!along_.empty()) {
       const std::vector<double> direction = parse_normal("--along", along_);
       if (direction.size() != 4)

@@ -192,6 +192,20 @@ class ScaleSpaceCommand final : public Command {
 
 }  // namespace
 
+namespace {
+
+/// Scales as the library takes them; its errors get the option's name.
+template <class Make>
+auto scales_of(const char* option, const std::string& text, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    throw Error(error.code(), fmt::format("{} {}: {}", option, text, error.what()));
+  }
+}
+
+}  // namespace
+
 std::vector<double> parse_sigmas(const char* option, const std::string& text) {
   const std::vector<std::string_view> range = split(text, ':');
   if (range.size() == 3) {
@@ -200,12 +214,12 @@ std::vector<double> parse_sigmas(const char* option, const std::string& text) {
       throw Error(
           ErrorCode::InvalidArgument,
           fmt::format("{} {} has the count {}; expected a whole number from 2 to 10000", option, text, range[2]));
-    return scale_sigmas(parse_finite(option, range[0]), parse_finite(option, range[1]),
-                        static_cast<std::size_t>(count));
+    const double first = parse_finite(option, range[0]), last = parse_finite(option, range[1]);
+    return scales_of(option, text, [&] { return scale_sigmas(first, last, static_cast<std::size_t>(count)); });
   }
   std::vector<double> sigmas;
   for (const std::string_view part : split(text, ',')) sigmas.push_back(parse_finite(option, part));
-  static_cast<void>(scale_axis(sigmas));
+  static_cast<void>(scales_of(option, text, [&] { return scale_axis(sigmas); }));
   return sigmas;
 }
 

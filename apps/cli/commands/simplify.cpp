@@ -160,11 +160,11 @@ class SimplifyCommand final : public ContourInputCommand {
 
   static void require_between(const char* option, const std::string& text, double least,
                               double most = std::numeric_limits<double>::infinity()) {
-    const double value = parse_finite(option, text);
+    const std::string expected = std::isinf(most) ? fmt::format("a number of {} or more", least)
+                                                  : fmt::format("a number from {} to {}", least, most);
+    const double value = parse_finite(option, text, expected);
     if (value >= least && value <= most) return;
-    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected {}", option, text,
-                                                        std::isinf(most) ? fmt::format("{} or more", least)
-                                                                         : fmt::format("{} to {}", least, most)));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("{} is '{}'; expected {}", option, text, expected));
   }
 
   /// Simplifies; error messages name the options of the command line.

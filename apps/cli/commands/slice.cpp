@@ -577,7 +577,7 @@ class SliceCommand final : public Command {
     const CutSpace space = space_of(input);
     factors_ = parse_scale(scale_, space);
     std::vector<ContourResult> results = results_for(std::move(cuts), space);
-    require_mesh_contour(input.mesh, isovalue, options_.allows_empty());
+    require_mesh_contour(input.mesh, isovalue, options_.allows_empty(), options_.library_options().ambiguity);
     auto arrays = read_point_arrays(attributes_, input.mesh, files(), images(), bar);
     take_order(input.mesh.files);
     for (PointArray& array : arrays) keep_times_of_cuts(array.mesh, results);

@@ -298,8 +298,9 @@ class TrackCommand final : public ContourInputCommand {
   }
 
   /// A line for each of the longest-lived tracks.
-  static std::string longest_text(const TrackGraph& graph, const ContourInput& input) {
-    constexpr std::size_t kMost = 8;
+  [[nodiscard]] std::string longest_text(const TrackGraph& graph, const ContourInput& input) const {
+    constexpr std::size_t kMost = 8;  // unless a number of tracks was requested
+    const std::size_t most = longest_ || largest_ ? graph.tracks.size() : kMost;
     const int last = input.space_dim() - 1;
     const std::string axis = input.axis_name(last);
     std::vector<std::string> units;
@@ -309,7 +310,7 @@ class TrackCommand final : public ContourInputCommand {
     const std::vector<std::size_t> order = falling(graph, lifetime);
     constexpr std::array kMeasures{"points", "length", "area", "volume"};
     std::string text;
-    for (std::size_t i = 0; i < std::min(kMost, order.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(most, order.size()); ++i) {
       const Track& track = graph.tracks[order[i]];
       const TrackEvent& start = graph.events[graph.segments[track.segments.front()].from];
       const TrackEvent& end = graph.events[graph.segments[track.segments.back()].to];

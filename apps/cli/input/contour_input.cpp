@@ -206,6 +206,10 @@ CutSpace space_of_periods(const AnyImage5d& image, const std::vector<std::string
 }
 
 Mesh read_finite_mesh(const std::string& file, const ReadMeshOptions& options) {
+  if (find_mesh_file_format(file) == nullptr)
+    throw Error(ErrorCode::UnsupportedFormat,
+                fmt::format("{}: no saved contour, by its name; expected {}: 'tegl contour' makes one of an image",
+                            file, kContourFiles));
   Mesh mesh = read_mesh(file, options);
   const auto is_finite = [](double x) { return std::isfinite(x); };
   const auto first = std::find_if_not(mesh.coordinates.begin(), mesh.coordinates.end(), is_finite);
@@ -352,7 +356,7 @@ ContourInput ContourInputCommand::read_mesh_contour(ProgressBar& bar) {
   const MeshInput input = read_mesh_input(files(), images(), bar.stage("read"), false);
   remark(input.mesh.remarks);
   result.variable = input.mesh.variable;
-  require_mesh_contour(input.mesh, *result.isovalue, allows_empty());
+  require_mesh_contour(input.mesh, *result.isovalue, allows_empty(), options.ambiguity);
   result.single_precision = options_.single_precision();
   result.last_axis = space_of(input).axes.back();
   result.last_axis_of = "mesh";

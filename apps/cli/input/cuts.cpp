@@ -235,7 +235,8 @@ std::vector<Cut> parse_cuts(const std::vector<std::string>& at) {
 
 std::vector<double> parse_list(const std::string& option, std::string_view text) {
   std::vector<double> numbers;
-  for (const std::string_view part : split(text, ',')) numbers.push_back(parse_finite(option, part));
+  for (const std::string_view part : split(text, ','))
+    numbers.push_back(parse_finite(option, part, "numbers, one for each axis"));
   return numbers;
 }
 

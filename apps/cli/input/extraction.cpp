@@ -48,9 +48,10 @@ void ExtractionOptions::add_to(CLI::App& app, bool of_images_alone) {
           ->allow_extra_args(false)
           ->type_name(of_images_alone ? "NUMBERS" : "NUMBER"),
       app.add_option("--triangulation", triangulation_,
-                     of_images_alone ? "compact: few simplices; barycentric: more and evener ones; for polygons of 3D "
-                                       "images: fan, zigzag, halving-chord, halving-kink"
-                                     : "compact: few simplices; barycentric: more and evener ones")
+                     of_images_alone
+                         ? "compact: few simplices; barycentric: more simplices of more even shape; for polygons of 3D "
+                           "images: fan, zigzag, halving-chord, halving-kink"
+                         : "compact: few simplices; barycentric: more simplices of more even shape")
           ->check(triangulations)
           ->capture_default_str(),
       app.add_option(
@@ -91,12 +92,14 @@ void ExtractionOptions::add_tiling_to(CLI::App& app, std::vector<std::string> wi
   app_ = &app;
   without_periods_ = std::move(without_periods);
   options_.push_back(
-      add_word_list(app, "--periodic", periodic_,
-                    "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
-                    "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
-                    "for longitudes, or as in x=2.5, in the axis's unit, more than twice each step; "
-                    "auto: longitudes that span 360 degrees; none: no axis, and no remark on such "
-                    "longitudes")
+      add_word_list(
+          app, "--periodic", periodic_,
+          "axes that are periodic, by name, as in lon, or by letter, as in x,y,z; or "
+          "longitude, by its unit; or all; the period is the number of samples x the step, 360 "
+          "for longitudes, or as in x=2.5, in the axis's unit: more than the distance of the first and last sample, "
+          "and than twice each step; "
+          "auto: longitudes that span 360 degrees; none: no axis, and no remark on such "
+          "longitudes")
           ->type_name("AXES"));
   options_.push_back(app.add_option("--lattice", lattice_,
                                     "samples on a staggered lattice: odd layers are shifted by half a step along the "

@@ -12,6 +12,7 @@
 #include "base/numbers.hpp"
 #include "input/cuts.hpp"
 #include "io/images/series_request.hpp"
+#include "io/meshes/meshes.hpp"
 #include "output/output.hpp"
 
 namespace tegl::cli {
@@ -75,6 +76,11 @@ auto with_hint(const std::string& variable, const std::vector<std::string>& file
   } catch (const Error& error) {
     if (const std::string hint = series_hint(error, options, kWords); !hint.empty())
       throw Error(error.code(), error.what() + hint);
+    if (error.code() == ErrorCode::UnsupportedFormat && find_mesh_file_format(files.front()) != nullptr)
+      throw Error(error.code(),
+                  fmt::format("{}: holds a mesh, such as a saved contour; expected an image: 'tegl check' "
+                              "and 'tegl slice' take meshes",
+                              files.front()));
     if (error.code() != ErrorCode::VariableNotFound || !variable.empty())
       throw Error(error.code(), with_option_names(error.what()));
     throw Error(error.code(),

@@ -136,7 +136,26 @@ CutSpace space_of(const MeshInput& input) {
   return space;
 }
 
-void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empty) {
+namespace {
+
+/// Whether no cell can be ambiguous: simplices at one time. Over time they are prisms, which can be.
+bool are_simplices(const CellMesh& mesh) {
+  return mesh.times.size() < 2 && std::ranges::all_of(mesh.types, [](CellType type) {
+           return type == CellType::triangle || type == CellType::tetrahedron || type == CellType::simplex4;
+         });
+}
+
+}  // namespace
+
+void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empty, Ambiguity ambiguity) {
+  if (ambiguity != Ambiguity::low && !mesh.types.empty() && are_simplices(mesh))
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("--ambiguity with a mesh of {}, none of which can be ambiguous; expected other cells, or the "
+                    "mesh without this option",
+                    mesh.dim == 2   ? "triangles"
+                    : mesh.dim == 3 ? "tetrahedra"
+                                    : "4-simplices"));
   if (allow_empty) return;
   if (mesh.types.empty())
     throw EmptyResult(

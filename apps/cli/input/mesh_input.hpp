@@ -47,8 +47,9 @@ MeshInput read_mesh_input(const std::vector<std::string>& files, const ImageOpti
 /// the ends of the intervals of these times, and one more on each side, for gradients.
 void keep_times(CellMesh& mesh, double first, double last);
 
-/// Throws EmptyResult unless the values have both sides of the isovalue, or `allow_empty`.
-void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empty);
+/// Throws EmptyResult unless the values have both sides of the isovalue, or `allow_empty`; InvalidArgument for a rule
+/// other than low if no cell can be ambiguous.
+void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empty, Ambiguity ambiguity);
 
 /// The remark about an empty contour: empty if all values are on one side of the isovalue, which was allowed; else that
 /// no cell without missing values has some on both sides.

@@ -39,6 +39,21 @@ void visit_image(const AnyImage5d& image, const F& f) {
   std::visit(f, image);
 }
 
+/// The values of samples next to a label that no sample has, for an error.
+template <class Values>
+std::string values_beside(const Values& values, double label) {
+  double below = -std::numeric_limits<double>::infinity(), above = std::numeric_limits<double>::infinity();
+  for (const auto each : values) {
+    const auto value = static_cast<double>(each);
+    if (value < label) below = std::max(below, value);
+    if (value > label) above = std::min(above, value);
+  }
+  if (std::isinf(below) && std::isinf(above)) return "; all samples are missing";
+  if (std::isinf(below)) return fmt::format("; expected one that samples have: the least is {}", number(above));
+  if (std::isinf(above)) return fmt::format("; expected one that samples have: the greatest is {}", number(below));
+  return fmt::format("; expected one that samples have, such as {} or {}", number(below), number(above));
+}
+
 /// Replaces an image by the mask of a label. Missing samples stay missing.
 template <class AnyDimension>
 void take_label(AnyDimension& image, double label, bool allow_empty) {
@@ -59,7 +74,9 @@ void take_label(AnyDimension& image, double label, bool allow_empty) {
       if constexpr (std::is_floating_point_v<To>)
         if (std::isnan(value)) to.values[i] = std::numeric_limits<To>::quiet_NaN();
     }
-    if (!any && !allow_empty) throw EmptyResult(fmt::format("--label {}: no sample has this value", number(label)));
+    if (!any && !allow_empty)
+      throw EmptyResult(
+          fmt::format("--label {}: no sample has this value{}", number(label), values_beside(from.values, label)));
     if constexpr (kOnlyReals)
       mask = std::move(to);
     else

@@ -4,6 +4,7 @@
 #include "program/run.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,7 @@
 
 #include "base/empty_result.hpp"
 #include "base/interrupt.hpp"
+#include "base/parse_errors.hpp"
 #include "base/printable.hpp"
 #include "base/suggestions.hpp"
 #include "base/thread_limit.hpp"
@@ -114,9 +116,11 @@ ExitCode run(Command& command, const Streams& streams) {
   }
 }
 
+constexpr std::array<std::string_view, 8> kNormals = {"gradient", "sobel",    "prewitt",   "context",
+                                                      "forward",  "backward", "geometric", "flat"};
+
 std::string unknown_normals(std::string_view kind) {
-  return fmt::format("--normals {}: expected gradient, sobel, prewitt, context, forward, backward, geometric or flat",
-                     kind);
+  return fmt::format("--normals is '{}'; expected one of {}", kind, fmt::join(kNormals, ", "));
 }
 
 /// Handles a command line that CLI11 refused, or a request for help. `normals_of`: the argument after --normals, if it
@@ -135,9 +139,7 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
     named = command;
   }
   // the message
-  std::string what = error.what();
-  if (error.get_name() == "ArgumentMismatch" && what.find("At Most 1 required") != std::string::npos)
-    what = what.substr(0, what.find(':')) + " is given more than once; expected it once";
+  std::string what = tegl::cli::parse_error_text(*named, error);
   std::error_code ignored;
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !normals_of.empty() &&
       !std::filesystem::exists(normals_of, ignored))
@@ -150,9 +152,6 @@ ExitCode refuse(const CLI::App& program, const CLI::ParseError& error, const Str
   const std::string message = fmt::format("{} (see {} --help)", what, help);
   return report(streams, json, ExitCode::Usage, "InvalidArgument", message);
 }
-
-constexpr std::array<std::string_view, 8> kNormals = {"gradient", "sobel",    "prewitt",   "context",
-                                                      "forward",  "backward", "geometric", "flat"};
 
 /// The arguments in reverse order, as CLI11 expects them. A kind of normals after --normals is joined to it, because
 /// CLI11 would take any next argument as the value of an option with an optional value.
@@ -225,9 +224,12 @@ int run_program(int argc, char** argv, const Release& release) {
   }
   // FILE accepts several values, so an invalid kind of normals would be read as one of them.
   std::error_code ignored;
-  if (const std::string_view kind = after_normals(argc, argv); !kind.empty() && !std::filesystem::exists(kind, ignored))
-    return static_cast<int>(report(streams, asks_for_json, ExitCode::Usage, "InvalidArgument",
-                                   fmt::format("{} (see tegl {} --help)", unknown_normals(kind), argv[1])));
+  const std::string_view kind = after_normals(argc, argv);
+  const bool is_empty = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--normals="; });
+  if (is_empty || (!kind.empty() && !std::filesystem::exists(kind, ignored)))
+    return static_cast<int>(
+        report(streams, asks_for_json, ExitCode::Usage, "InvalidArgument",
+               fmt::format("{} (see tegl {} --help)", unknown_normals(is_empty ? std::string_view() : kind), argv[1])));
   const auto named =
       std::find_if(commands.begin(), commands.end(), [](const auto& command) { return command->named(); });
   const ExitCode exit = run(**named, streams);

@@ -102,6 +102,10 @@ class ViewCommand final : public ContourInputCommand {
       scene["layers"].push_back(add_file(numbers, bar, shown));
       require_one_space(shown);
     }
+    if (app().count("--tracks") > 0 && std::ranges::none_of(shown, [](const Shown& one) { return one.dim == 4; }))
+      throw Error(
+          ErrorCode::InvalidArgument,
+          fmt::format("--tracks {} with a contour in {}D; expected it with one in 4D", tracks_, shown.front().dim));
     // assemble and write the page
     const std::string packed = numbers.packed(bar.stage("pack"));
     const std::string page = make_page(scene, scene["title"].get<std::string>(), packed);

@@ -20,7 +20,7 @@
 namespace tegl::io_detail {
 
 /// Part of messages about files with more axes than read_image supports.
-inline constexpr const char* kMoreAxes = "5 to contour, slice, track, measure and label";
+inline constexpr const char* kMoreAxes = "5 for contours, slices, tracks, measures, components and elements";
 
 /// Throws Error{code, "path: message"}.
 template <class... Args>

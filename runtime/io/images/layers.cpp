@@ -140,6 +140,16 @@ std::vector<Axis> raw_axes(const RawLayout& layout, const fs::path& path) {
   return axes;
 }
 
+/// Adds a remark if the file has bytes after the last sample: the sizes, the type or the offset may be wrong.
+void remark_on_rest(const StoredSamples& samples, ImageInfo& info) {
+  const std::uint64_t bytes = size_of_file(samples.path);
+  const std::uint64_t end = samples.offset + checked_bytes(samples.sizes, bytes_of_type(samples.type), samples.path);
+  if (bytes == end) return;
+  info.remarks.push_back(fmt::format("{}: {} of {} bytes follow the last of {} samples of type {}, and are ignored",
+                                     samples.path.string(), bytes - end, bytes, shape_text(samples.sizes),
+                                     samples.type));
+}
+
 }  // namespace
 
 OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& path) {
@@ -206,8 +216,9 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   samples.type = name_of(*layout.type);
   samples.sizes.assign(layout.sizes.begin(), layout.sizes.end());
   samples.swapped = layout.big_endian != (std::endian::native == std::endian::big);
-  source.read = [reader = std::make_shared<SampleReader>(std::move(samples)), per_layer](std::size_t first,
-                                                                                         std::size_t count) {
+  const auto reader = std::make_shared<SampleReader>(std::move(samples));
+  remark_on_rest(reader->samples(), source.info);
+  source.read = [reader, per_layer](std::size_t first, std::size_t count) {
     return reader->read(first * per_layer, count * per_layer, {});
   };
   source.info.format = "raw";

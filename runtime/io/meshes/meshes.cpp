@@ -79,18 +79,23 @@ void check_wrapped(const MeshView& mesh, const MeshFileFormat& format, const fs:
          mesh.periods.size(), 2 * mesh.space_dim + 1);
 }
 
+/// "tetrahedra" for 3 dimensions.
+std::string name_of_simplices(int dim) {
+  constexpr std::array kNames = {"points", "segments", "triangles", "tetrahedra", "4-simplices"};
+  return kNames.at(static_cast<std::size_t>(dim));
+}
+
 /// Every format supports triangles, and all except STL support lines. Tetrahedra, 4-simplices and more than three
 /// coordinates are only supported by formats with most_dim = 4.
 void check_combination(const MeshView& mesh, const MeshFileFormat& format, const fs::path& path) {
   if (mesh.dim < format.least_dim)
     fail(ErrorCode::UnsupportedFormat, path,
-         "'{}' cannot hold {}-simplices, which lines are made of; expected .ply, .gltf, .glb, .obj or .vtkhdf",
-         path.extension().string(), mesh.dim);
+         "'{}' cannot hold segments, which lines are made of; expected .ply, .gltf, .glb, .obj or .vtkhdf",
+         path.extension().string());
   if (mesh.dim > format.most_dim || (mesh.space_dim > 3 && format.most_dim < 3))
     fail(ErrorCode::UnsupportedFormat, path,
-         "'{}' cannot hold {}-simplices in {}-space (the contour of a {}D image); "
-         "expected .vtkhdf, or a cut of it",
-         path.extension().string(), mesh.dim, mesh.space_dim, mesh.space_dim);
+         "'{}' cannot hold {} in {}D space (the contour of a {}D image); expected .vtkhdf, or a slice of it",
+         path.extension().string(), name_of_simplices(mesh.dim), mesh.space_dim, mesh.space_dim);
 }
 
 /// The format for a file's extension. Throws unless it supports the mesh and the options.

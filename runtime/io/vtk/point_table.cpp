@@ -280,7 +280,8 @@ std::size_t choose_column(const PointTable& table, const std::string& variable, 
   const auto found = std::find(names.begin(), names.end(), variable);
   if (!variable.empty() && found != names.end()) return static_cast<std::size_t>(found - names.begin());
   if (variable.empty())
-    fail(ErrorCode::VariableNotFound, path, "has the columns {}; expected a choice", fmt::join(names, ", "));
+    fail(ErrorCode::VariableNotFound, path, "{} columns, and none chosen; expected one of {}", names.size(),
+         fmt::join(names, ", "));
   fail(ErrorCode::VariableNotFound, path, "has no column '{}' of values; it has {}", variable, fmt::join(names, ", "));
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/slice_at.hpp"
 #include "tegl/eigen.hpp"
@@ -25,7 +26,11 @@ requires DimensionBetween<N, 2, 5> HyperplaneFrame<N> frame_of(const Hyperplane<
   const Column normal = as_eigen(hyperplane.normal);
   double most = normal.cwiseAbs().maxCoeff();
   if (!normal.allFinite() || !(most > 0.0))
-    throw Error(ErrorCode::InvalidArgument, "normal of a hyperplane that is 0 or not finite; expected another");
+    throw Error(
+        ErrorCode::InvalidArgument,
+        fmt::format("normal of a hyperplane that is 0 or not finite: ({}); expected finite numbers that are not "
+                    "all 0",
+                    fmt::join(hyperplane.normal, ", ")));
   if (!std::isfinite(hyperplane.offset))
     throw Error(ErrorCode::InvalidArgument, fmt::format("cut at {}; expected a finite coordinate", hyperplane.offset));
   HyperplaneFrame<N> frame;

@@ -214,7 +214,7 @@ std::array<double, N> place_in_grid(const detail::GridLocator<N>& locator, const
     last[a] = grid.axes[a][grid.axes[a].size() - 1];
   }
   throw Error(ErrorCode::InvalidArgument,
-              fmt::format("the point ({}) is not in the image; expected one from ({}) to ({}){}",
+              fmt::format("the point ({}) is not in the image; expected one from ({:.6g}) to ({:.6g}){}",
                           fmt::join(point, ", "), fmt::join(first, ", "), fmt::join(last, ", "),
                           grid.has_world_map() ? ", mapped to the world as the image is" : ""));
 }

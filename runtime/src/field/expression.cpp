@@ -91,6 +91,13 @@ class Evaluators {
   std::vector<std::unique_ptr<Evaluator>> free_;
 };
 
+/// The parser's message as a part of one: without its full stop.
+std::string message_of(const mu::ParserError& error) {
+  std::string text = error.GetMsg();
+  text.erase(text.find_last_not_of(". ") + 1);
+  return text;
+}
+
 }  // namespace
 
 bool has_expressions() noexcept { return true; }
@@ -103,7 +110,7 @@ Field make_expression(const std::string& text, int dim) {
     evaluators->give_back(evaluators->take());
   } catch (const mu::ParserError& error) {
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("the expression '{}': {}; expected an expression of {} and r", text, error.GetMsg(),
+                fmt::format("the expression '{}': {}; expected an expression of {} and r", text, message_of(error),
                             fmt::join(kCoordinates.begin(), kCoordinates.begin() + dim, ", ")));
   }
   return Field(dim, [evaluators, dim, text](const double* start, double step, std::size_t count, double* out) {
@@ -116,7 +123,7 @@ Field make_expression(const std::string& text, int dim) {
         out[i] = one->parser.Eval();
       }
     } catch (const mu::ParserError& error) {  // in a part that was not evaluated before
-      throw Error(ErrorCode::InvalidArgument, fmt::format("the expression '{}': {}", text, error.GetMsg()));
+      throw Error(ErrorCode::InvalidArgument, fmt::format("the expression '{}': {}", text, message_of(error)));
     }
     evaluators->give_back(std::move(one));
   });

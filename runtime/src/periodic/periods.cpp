@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,14 @@ void require_samples(const Axis& axis, int a) {
                        axis.size()));
 }
 
+/// A number in a message with six significant digits, or as many more as it takes to differ from `other`.
+std::string text_apart(double value, double other) {
+  for (int digits = 6; digits < std::numeric_limits<double>::max_digits10; ++digits)
+    if (std::string text = fmt::format("{:.{}g}", value, digits); text != fmt::format("{:.{}g}", other, digits))
+      return text;
+  return fmt::format("{}", value);
+}
+
 void check_period(const Axis& axis, int a, double period) {
   if (!std::isfinite(period) || period < 0.0)
     refuse(fmt::format("the period of {} is {}; expected a positive number, or 0 if it is not periodic",
@@ -42,7 +51,8 @@ void check_period(const Axis& axis, int a, double period) {
   require_samples(axis, a);
   if (!(period > length_of(axis)))
     refuse(fmt::format("the period of {} is {}; expected more than {}, the distance between its first and last sample",
-                       detail::label_of_axis(axis, a), period, length_of(axis)));
+                       detail::label_of_axis(axis, a), text_apart(period, length_of(axis)),
+                       text_apart(length_of(axis), period)));
 }
 
 bool is_longitude(const Axis& axis) {

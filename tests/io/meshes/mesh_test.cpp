@@ -187,7 +187,7 @@ TEST(Mesh, FiveDimensionalContoursGoThroughVtkhdf) {
   EXPECT_EQ(back.normals[4][4], 1);
   EXPECT_TRUE(back.simplices == contour.simplices);
   EXPECT_EQ(back.axis_names[4], "e");
-  expect_error(ErrorCode::UnsupportedFormat, {"4-simplices in 5-space (the contour of a 5D image)"},
+  expect_error(ErrorCode::UnsupportedFormat, {"4-simplices in 5D space (the contour of a 5D image)"},
                [&] { write_mesh(contour, dir / "b.ply"); });
 }
 
@@ -572,10 +572,10 @@ TEST(Mesh, CombinationsThatAFormatCannotHoldAreNamed) {
   TempDir dir;
   for (const char* name : {"a.ply", "a.glb", "a.gltf", "a.stl", "a.obj"})
     expect_error(ErrorCode::UnsupportedFormat,
-                 {name, "3-simplices in 4-space (the contour of a 4D image); expected .vtkhdf, or a cut of it"},
+                 {name, "tetrahedra in 4D space (the contour of a 4D image); expected .vtkhdf, or a slice of it"},
                  [&] { write_mesh(random_mesh(3, 4, 4, 1, 1), dir / name); });
   for (const int space_dim : {2, 3})
-    expect_error(ErrorCode::UnsupportedFormat, {"a.stl", "1-simplices, which lines are made of; expected .ply"},
+    expect_error(ErrorCode::UnsupportedFormat, {"a.stl", "segments, which lines are made of; expected .ply"},
                  [&] { write_mesh(random_mesh(1, space_dim, 3, 1, 1), dir / "a.stl"); });
   expect_error(ErrorCode::UnsupportedFormat, {"a.xyz", "'.xyz'; expected .ply"},
                [&] { write_mesh(random_mesh(2, 3, 3, 1, 1), dir / "a.xyz"); });

@@ -77,7 +77,7 @@ struct ImageInfo {
   std::optional<Lattice> lattice = {};
   std::optional<ValueScaling> scaling = {};  ///< set if the image has stored integers (`keep_stored`)
   std::vector<std::string> remarks =
-      {};  ///< DICOM: skipped files, uneven slice distances; coordinates that are not used
+      {};  ///< DICOM: skipped files, uneven slice distances; coordinates and bytes of raw files that are not used
 };
 
 /// An image and its metadata.
