@@ -159,7 +159,7 @@ def test_stl_and_obj_hold_the_same_closed_surface_with_high_inside(time_axis, tm
     assert (tmp_path / "ball.stl").stat().st_size == 84 + 50 * len(contour.simplices)
     tegl.contour(ball(2, 21), 0.0).save(tmp_path / "line.obj")
     assert tegl.load(tmp_path / "line.obj").check().is_closed
-    with pytest.raises(ValueError, match="expected .vtkhdf, or a cut of it"):
+    with pytest.raises(ValueError, match="expected .vtkhdf, or a slice of it"):
         tegl.contour(ball(4, 9), 0.0).save(tmp_path / "no.stl")
 
 

@@ -474,7 +474,7 @@ TEST_F(Series, OfFilesThatAreTurnedOrShiftedInSpaceIsRefused) {
 
 TEST_F(Series, OfFourAxesIsReadToFiveOnly) {
   for (const char* const name : {"a.nrrd", "b.nrrd"}) add(name, nrrd({2, 2, 2, 2}, 0));
-  expect_refused(ErrorCode::UnsupportedData, {"a.nrrd", "image of 5 axes", "5 to contour"});
+  expect_refused(ErrorCode::UnsupportedData, {"a.nrrd", "image of 5 axes", "5 for contours"});
   const auto read = read_series_to_5d(files_, SeriesOptions{});
   ASSERT_TRUE(std::holds_alternative<ReadSeries5dResult>(read));
 }
