@@ -130,6 +130,9 @@ def parse_arguments():
 
 def main() -> None:
     options = parse_arguments()
+    for program in ("extract_bench", "first_contour"):
+        if not (options.build / "bench" / program).exists():
+            raise SystemExit(f"resolved.py: no {options.build / 'bench' / program}; build it first")
     os.environ["GLIBC_TUNABLES"] = "glibc.malloc.hugetlb=1"  # as in the side-by-side comparison
     result = {"machine": machine.describe(options.build), "rows": []}
     for case in CASES:

@@ -10,7 +10,7 @@ function(run)
   endif()
 endfunction()
 
-run(${CMAKE_COMMAND} --preset demo -B ${BINARY} ${ARGUMENTS})
+run(${CMAKE_COMMAND} --preset demo --fresh -B ${BINARY} ${ARGUMENTS})
 run(${CMAKE_COMMAND} --build ${BINARY} --target tegl_cli --parallel 2)
 run(${BINARY}/bin/tegl contour ${DATA} --iso 20 -o ${BINARY}/demo.vtkhdf)
 run(${BINARY}/bin/tegl check ${BINARY}/demo.vtkhdf)
