@@ -31,8 +31,7 @@ requires DimensionBetween<N, 2, 5>
 
 /// The periods of longitudes: 360 for each even axis with a unit of longitudes (`is_longitude_unit`) whose samples span
 /// 360 degrees without repeating the first one, to less than half a step; 0 for the others, and for axes that the world
-/// map mixes with others. If
-/// the world map scales the axis, longitudes are those of the world, and the period is 360 there.
+/// map mixes with others. If the world map scales the axis, longitudes are the world's, and the period is 360 there.
 template <int N>
 requires DimensionBetween<N, 2, 5>
 [[nodiscard]] AxisPeriods<N> longitude_periods(const Grid<N>& grid);
