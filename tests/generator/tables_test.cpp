@@ -2,6 +2,7 @@
 //
 // The compiled tables, decoded by the contract and compared with the builder; and the manifest, which is reviewed in
 // their place.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -247,7 +248,8 @@ TEST(Manifest, IsWhatTheBuildGenerated) {
        {"manifest2", "manifest3", "manifest4", "builder2_manifest", "builder3_manifest", "builder4_manifest",
         "builder5_manifest", "builder2_edges_manifest", "builder3_edges_manifest", "builder3_barycentric_manifest",
         "builder3_barycentric_edges_manifest", "builder4_edges_manifest", "builder5_edges_manifest", "cells_manifest"})
-    joined += (joined.empty() ? "[\n" : ",\n") + text_of(std::string(TEGL_TABLE_DIR) + "/" + name + ".json");
+    joined +=
+        fmt::format("{}{}", joined.empty() ? "[\n" : ",\n", text_of(fmt::format("{}/{}.json", TEGL_TABLE_DIR, name)));
   joined += "]\n";
   EXPECT_EQ(text_of(TEGL_SOURCE_DIR "/generated/MANIFEST.json"), joined)
       << "the tables have changed; where that was meant: ninja update_manifest, and say why in the commit";
