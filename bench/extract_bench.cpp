@@ -2,22 +2,28 @@
 //
 // Benchmarks of extraction, stage by stage: the fixed fields in 2D, 3D and 4D, both triangulations, all value types,
 // closed or open, by number of threads and by size (scaling/..., which bench/scaling plots); in 5D a smooth field,
-// noise, and single tiles. stages.hpp documents the report.
+// noise, and single tiles. stages.hpp documents the report. With --simd=NAME (of Highway, as AVX2) as the first
+// argument, the library uses no instruction set that is better than this one.
 #include <benchmark/benchmark.h>
+#include <fmt/ranges.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <map>
 #include <random>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "fields.hpp"
 #include "stages.hpp"
+#include "tegl/error.hpp"
 #include "tegl/tile_facets.hpp"
 
 namespace tegl::bench {
@@ -227,10 +233,33 @@ void add_all() {
   add_scaling<4>("noise", {16, 24, 32, 48});
 }
 
+/// Disables the instruction sets that are better than `name`. Error: InvalidArgument, if the processor or the library
+/// does not have it.
+void restrict_to(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    if (name == hwy::TargetName(target)) return hwy::DisableTargets(target - 1);  // better ones are lower bits
+    names.emplace_back(hwy::TargetName(target));
+  }
+  throw Error(ErrorCode::InvalidArgument,
+              fmt::format("--simd: '{}'; expected one of {}", name, fmt::join(names, ", ")));
+}
+
 }  // namespace
 }  // namespace tegl::bench
 
 int main(int argc, char** argv) {
+  constexpr std::string_view kSimd = "--simd=";
+  if (argc > 1 && std::string_view(argv[1]).starts_with(kSimd)) {
+    try {
+      tegl::bench::restrict_to(std::string_view(argv[1]).substr(kSimd.size()));
+    } catch (const tegl::Error& error) {
+      fmt::print(stderr, "extract_bench: {}\n", error.what());
+      return 2;
+    }
+    std::copy(argv + 2, argv + argc + 1, argv + 1);  // with the null at the end
+    --argc;
+  }
   tegl::bench::add_all();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

@@ -33,6 +33,7 @@ class Case:
 
     name: str
     benchmarks: str  # name in extract_bench without rule and threads
+    simd: str = ""  # instead of the processor's best instruction set, one of Highway's names
     ratio: dict = dataclasses.field(default_factory=dict)  # rule -> at most so many times the time of low
     ms_per_tile: dict = dataclasses.field(default_factory=dict)  # rule -> at most so many ms for an active tile
     tiles_per_second: dict = dataclasses.field(default_factory=dict)  # rule -> at least so many active tiles
@@ -46,6 +47,8 @@ CASES = [
     Case("two merging balls, 64⁴", "extract/balls/64^4", ratio={"mean": 1.15, "saddle": 1.15}),
     Case("uniform noise, 16⁴", "extract/noise/16^4", ratio={"mean": 3.5, "saddle": 3.5}),
     Case("uniform noise, 32⁴", "extract/noise/32^4", ratio={"mean": 3.5, "saddle": 3.5}),
+    Case("uniform noise, 16⁴", "extract/noise/16^4", simd="AVX2", ratio={"mean": 3.5, "saddle": 3.5}),
+    Case("uniform noise, 32⁴", "extract/noise/32^4", simd="AVX2", ratio={"mean": 3.5, "saddle": 3.5}),
     Case("sphere, 24⁴, barycentric", "barycentric/sphere/24^4/barycentric"),
     Case("uniform noise, 8⁴, barycentric", "barycentric/noise/8^4/barycentric"),
     Case("uniform noise, 4⁵", "extract/noise/4^5", ms_per_tile={"low": 0.25, "mean": 0.25, "saddle": 0.25}),
@@ -58,7 +61,8 @@ def run_benchmarks(case: Case, threads: int, options) -> list[dict]:
     names = f"^{re.escape(case.benchmarks)}(/({'|'.join(RULES[1:])}))?/threads:{threads}/"
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder) / "out.json"
-        subprocess.run([options.build / "bench/extract_bench", f"--benchmark_filter={names}",
+        subprocess.run([options.build / "bench/extract_bench", *([f"--simd={case.simd}"] if case.simd else []),
+                        f"--benchmark_filter={names}",
                         f"--benchmark_repetitions={options.repetitions}", "--benchmark_enable_random_interleaving=true",
                         f"--benchmark_min_time={options.min_time}", f"--benchmark_out={out}",
                         "--benchmark_out_format=json"], check=True, stdout=subprocess.DEVNULL)
@@ -86,7 +90,8 @@ def measure(case: Case, threads: int, options) -> dict:
     for side in sides.values():
         side["ratio"] = side["median_ms"] / sides["low"]["median_ms"]
         side["ratio_of_least"] = side["least_ms"] / sides["low"]["least_ms"]
-    return {"name": case.name, "threads": threads, "sides": sides, "verdicts": verdicts(case, sides)}
+    name = f"{case.name}, {case.simd}" if case.simd else case.name
+    return {"name": name, "threads": threads, "sides": sides, "verdicts": verdicts(case, sides)}
 
 
 def verdicts(case: Case, sides: dict) -> list[dict]:
@@ -138,11 +143,13 @@ def main() -> None:
     for case in CASES:
         if options.only not in case.name:
             continue
+        if case.simd and result["machine"]["processor"]["simd"] != "avx512f":
+            continue  # the same as without, or not possible
         for threads in options.threads:
             if threads == 4 and case.benchmarks.startswith("barycentric"):
                 continue  # extract_bench has these on one thread
             result["rows"].append(measure(case, threads, options))
-            print(f"{case.name}, {threads}: " + ", ".join(f"{rule} {side['median_ms']:.2f} ms ({side['ratio']:.2f}×)"
+            print(f"{result['rows'][-1]['name']}, {threads}: " + ", ".join(f"{rule} {side['median_ms']:.2f} ms ({side['ratio']:.2f}×)"
                                                           for rule, side in result["rows"][-1]["sides"].items()), flush=True)
     if not options.only:
         result["start"] = measure_start(options)
