@@ -41,7 +41,8 @@ TEST(GenCli, BuilderIsPrintedOrWrittenWithItsManifest) {
       EXPECT_THAT(written.out, HasSubstr("wrote " + name + ".hpp"));
       const auto files = contents(folder.file(name));
       ASSERT_EQ(files.size(), 3u);
-      EXPECT_EQ(printed.out, files.at(name + ".hpp") + "\n" + files.at(name + ".cpp"));
+      EXPECT_EQ(printed.out, "// ---- " + name + ".hpp ----\n" + files.at(name + ".hpp") + "\n// ---- " + name +
+                                 ".cpp ----\n" + files.at(name + ".cpp"));
       const json manifest = json::parse(files.at(name + "_manifest.json"));
       EXPECT_EQ(manifest.at("builder"), std::stoi(dim));
       EXPECT_EQ(manifest.at("leaf"), leaf);

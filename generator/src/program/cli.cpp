@@ -473,7 +473,8 @@ commands (one of)
   --out DIR        certifies, then writes the tables of dimension N (2 ... 4) into DIR
   --cases DIR      writes the catalogue of cases (N = 2 ... 4) into DIR: a Markdown page and its pictures
   --builder        certifies, then prints source code that builds the contour of one tile by recursion over its
-                   faces, each ambiguity resolved by its caller (N = 2 ... 5); with --out DIR, writes it into DIR
+                   faces, each ambiguity resolved by its caller (N = 2 ... 5): header and sources, each after a line
+                   with its name; with --out DIR, writes them into DIR
   --cells          (without --dim) makes and certifies the tables of the cells of meshes and lattices: simplices,
                    quadrilateral, wedge, pyramid, hexahedron, octahedron, the prisms of 3D cells over time, and the
                    16-cell; prints classes and figures; with --out DIR, writes the tables into DIR

@@ -252,7 +252,8 @@ int run_builder(const Options& options) {
                     options.triangulation == TriangulationChoice::Barycentric ? Triangulation::barycentric
                                                                               : Triangulation::compact});
   if (options.out.empty()) {
-    for (std::size_t i = 0; i + 1 < emitted.size(); ++i) fmt::print("{}{}", i == 0 ? "" : "\n", emitted[i].text);
+    for (std::size_t i = 0; i + 1 < emitted.size(); ++i)  // all but the manifest
+      fmt::print("{}// ---- {} ----\n{}", i == 0 ? "" : "\n", emitted[i].name, emitted[i].text);
     return 0;
   }
   const auto read = [&](const std::string& name) {

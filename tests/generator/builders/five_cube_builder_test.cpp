@@ -9,6 +9,7 @@
 #include <string>
 
 #include "builder5_edges.hpp"
+#include "five_cube_beside.hpp"
 #include "five_cube_checks.hpp"
 #include "five_cube_high_side.hpp"
 #include "five_cube_map.hpp"
@@ -52,6 +53,15 @@ TEST(FiveCubeBuilder, FacetsAreThoseOfTheDefinition) {
   for (std::size_t i = 0; i < tiles; ++i) {
     const FiveKeys how = i % 2 == 0 ? FiveKeys::resolved : FiveKeys::few_high_resolved;
     ASSERT_EQ(checks.fault_by_centres(random_centres<builders::FiveKey>(random, how)), "");
+  }
+}
+
+TEST(FiveCubeBuilder, OwnVerticesLieInsideTheirFaces) {
+  Checks checks;
+  for (const FiveKeys how : kAllFiveKeys) {
+    std::mt19937_64 random(8);
+    for (int i = 0; i < unless_sanitized(4000, 400); ++i)
+      ASSERT_EQ(checks.fault_of_own_vertices(random_five_key<builders::FiveKey>(random, how)), "");
   }
 }
 
@@ -127,6 +137,16 @@ TEST(FaultyBuilder, OfThe5CubeIsFound) {
   EXPECT_THAT((TEGL_FAULT(five_cube_sign)()), HasSubstr("orientation"));
   EXPECT_THAT((TEGL_FAULT(five_cube_square)()), HasSubstr("a triangle in a single tetrahedron"));
   EXPECT_THAT((TEGL_FAULT(five_cube_high_side)()), HasSubstr("facets join other vertices"));
+}
+
+TEST(FaultyBuilder, OfTheCopyOfAVertexWithoutCornersIsFound) {
+  using namespace builders::five_cube_beside;
+  FiveCubeChecks<FiveCubeBuilder, FiveKey, FiveCube> checks;
+  std::mt19937_64 random(8);
+  std::string fault;
+  for (int i = 0; i < 4000 && fault.empty(); ++i)
+    fault = checks.fault_of_own_vertices(random_five_key<FiveKey>(random, FiveKeys::squares));
+  EXPECT_THAT(fault, testing::HasSubstr("a mean in the boundary of its face"));
 }
 
 TEST(FaultyBuilder, OfTheSideThatA5CubeJoinsDiffersFromTheDefinition) {

@@ -27,9 +27,9 @@
 namespace tegl::test {
 
 /// The ways in which random keys are made.
-enum class FiveKeys { low, few_high, smooth, resolved, few_high_resolved };
-inline constexpr std::array kAllFiveKeys = {FiveKeys::low, FiveKeys::few_high, FiveKeys::smooth, FiveKeys::resolved,
-                                            FiveKeys::few_high_resolved};
+enum class FiveKeys { low, few_high, smooth, resolved, few_high_resolved, squares };
+inline constexpr std::array kAllFiveKeys = {FiveKeys::low,      FiveKeys::few_high,          FiveKeys::smooth,
+                                            FiveKeys::resolved, FiveKeys::few_high_resolved, FiveKeys::squares};
 
 /// A random key. It depends on the generator's state only.
 template <class Key>
@@ -50,6 +50,7 @@ Key random_five_key(std::mt19937_64& random, FiveKeys how) {
       key.signature |= (value > 0 ? 1u : 0u) << v;
     }
   }
+  if (how == FiveKeys::squares) key.high_squares = {random(), random() & 0xffffu};  // all else is separate
   if (how != FiveKeys::resolved && how != FiveKeys::few_high_resolved) return key;
   key.high_squares = {random(), random() & 0xffffu};
   key.low_cubes = random() & 0xff'ffff'ffffu;
@@ -72,9 +73,11 @@ class FiveCubeChecks {
     for (unsigned f = 0; f < 10; ++f) tesseract_[f] = find(f % 2 << f / 2, 31u ^ 1u << f / 2);
   }
 
-  /// Builds the tile of a key: the certificate, the components that its facets join, and those of the general builder.
+  /// Builds the tile of a key: the certificate, the components that its facets join, those of the general builder, and
+  /// the points of own vertices.
   std::string fault_of(const Key& key) {
     const auto contour = builder_.build(key);
+    if (std::string fault = fault_of_own(key, contour); !fault.empty()) return fault;
     const tile::TileFacets built = as_built(contour);
     if (const tile::Fault fault = certifier_.certify(lattice_, built); fault != tile::Fault::none)
       return fmt::format("signature {:#x}: {}", key.signature, tile::name_of(fault));
@@ -88,6 +91,12 @@ class FiveCubeChecks {
                          key.signature);
     return "";
   }
+
+  /// Of the tile of a key: whether each own vertex lies inside its face for all positions of the points on edges. It
+  /// has critical edges and corners of one side, all in its face. If it has corners, it lies on a ray from the centre;
+  /// otherwise at a mean, so that its edges must not all be in one facet of the face. Those with the same points are
+  /// numbered in order.
+  std::string fault_of_own_vertices(const Key& key) { return fault_of_own(key, builder_.build(key)); }
 
   /// In the low-connected contour, Sigma separates the corners that edges connect, and the low ones that squares
   /// connect, too. It has one component less than there are such sets, as the boundary is simply connected.
@@ -167,6 +176,40 @@ class FiveCubeChecks {
     for (unsigned f = 0; f < 10; ++f) choices_[tesseract_[f]] = of(key.low_tesseracts, key.high_tesseracts, f);
     choices_.back() = key.tile;
     return choices_;
+  }
+
+  /// See fault_of_own_vertices.
+  static std::string fault_of_own(const Key& key, const typename Builder::Contour& contour) {
+    std::map<std::array<std::uint64_t, 4>, unsigned> repeats;  // by face and points
+    for (std::size_t i = 0; i < contour.own.size(); ++i) {
+      const auto& [points, repeat, face] = contour.own[i];
+      // by axis and side of the 5-cube: whether it has all points, as bit 2 * axis + side
+      unsigned all_in = 0x3ff;
+      const auto add = [&](unsigned v) {
+        for (unsigned a = 0; a < 5; ++a) all_in &= ~(1u << (2 * a + ((v >> a & 1u) ^ 1u)));
+      };
+      for (unsigned v = 0; v < 32; ++v)
+        if ((points.corners >> v & 1u) != 0) add(v);
+      bool are_critical = true;
+      for (unsigned e = 0; e < 80; ++e)
+        if ((points.edges[e / 64] >> e % 64 & 1u) != 0) {
+          const auto& [from, to] = Cube::kEdges[e];
+          add(from), add(to);
+          are_critical = are_critical && ((key.signature >> from ^ key.signature >> to) & 1u) != 0;
+        }
+      const auto has_fault = [&](const char* fault) {
+        return fmt::format("signature {:#x}, own vertex {}: {}", key.signature, i, fault);
+      };
+      if (!are_critical) return has_fault("an edge without a point");
+      if ((points.corners & key.signature) != 0 && (points.corners & ~key.signature) != 0)
+        return has_fault("corners of both sides");
+      if (face != Builder::kTile && (all_in >> face & 1u) == 0) return has_fault("points outside of its face");
+      if (points.corners == 0 && (face == Builder::kTile ? all_in : all_in & ~(1u << face)) != 0)
+        return has_fault("a mean in the boundary of its face");
+      const auto expected = repeats[{face, points.corners, points.edges[0], points.edges[1]}]++;
+      if (repeat != expected) return has_fault("numbers of equal points are not in order");
+    }
+    return "";
   }
 
   /// The contour in the form of the general builder.

@@ -306,6 +306,19 @@ TEST(Extract5d, NoiseIsAManifoldOpenOnlyAtTheBorder) {
     }
 }
 
+TEST(Extract5d, NoSimplexOfNoiseHasZeroSize) {
+  for (const std::uint32_t seed : {21u, 22u, 23u}) {
+    const auto image = noise<float, 5>(4, seed);
+    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle,
+                                      Ambiguity::squares, Ambiguity::decider}) {
+      ExtractOptions options;
+      options.ambiguity = ambiguity;
+      EXPECT_EQ(check(extract<double>(image.view(), 0.5, options)).degenerate_simplices, 0u)
+          << seed << ", " << static_cast<int>(ambiguity);
+    }
+  }
+}
+
 TEST(Extract5d, CompactContoursHaveTheTopologyOfBarycentricOnesAndFewerSimplices) {
   const auto expect_same_topology = [](const auto& image, double isovalue, ExtractOptions options, double share) {
     const auto compact = extract<double>(image.view(), isovalue, options);
