@@ -60,7 +60,7 @@ TEST(FiveCubeBuilder, OwnVerticesLieInsideTheirFaces) {
   Checks checks;
   for (const FiveKeys how : kAllFiveKeys) {
     std::mt19937_64 random(8);
-    for (int i = 0; i < unless_sanitized(4000, 400); ++i)
+    for (std::size_t i = 0; i < unless_sanitized(4000, 400); ++i)
       ASSERT_EQ(checks.fault_of_own_vertices(random_five_key<builders::FiveKey>(random, how)), "");
   }
 }
