@@ -92,8 +92,8 @@ class FiveCubeChecks {
     return "";
   }
 
-  /// Of the tile of a key: whether each own vertex lies inside its face for all positions of the points on edges. It
-  /// has critical edges and corners of one side, all in its face. If it has corners, it lies on a ray from the centre;
+  /// Of the tile of a key: whether each own vertex lies inside its face for all positions of the points on edges. Its
+  /// edges are critical, and all its points are in its face. If it has corners, it lies on a ray from the centre;
   /// otherwise at a mean, so that its edges must not all be in one facet of the face. Those with the same points are
   /// numbered in order.
   std::string fault_of_own_vertices(const Key& key) { return fault_of_own(key, builder_.build(key)); }
@@ -201,8 +201,6 @@ class FiveCubeChecks {
         return fmt::format("signature {:#x}, own vertex {}: {}", key.signature, i, fault);
       };
       if (!are_critical) return has_fault("an edge without a point");
-      if ((points.corners & key.signature) != 0 && (points.corners & ~key.signature) != 0)
-        return has_fault("corners of both sides");
       if (face != Builder::kTile && (all_in >> face & 1u) == 0) return has_fault("points outside of its face");
       if (points.corners == 0 && (face == Builder::kTile ? all_in : all_in & ~(1u << face)) != 0)
         return has_fault("a mean in the boundary of its face");
