@@ -400,7 +400,7 @@ def main() -> None:
             "from one machine: compare ratios, not times."]
     text += page("side_by_side", "Side by side", "`bench/side_by_side`: all programs on the same samples, in turn, in one process.",
                  side_by_side)
-    text += page("resolved", "Resolved ambiguities", "`bench/resolved.py`: the rules of an image in one process, in random order. Processor "
+    text += page("resolved", "Resolved ambiguities", "`bench/resolved.py`: the rules of an image in one process, in random order, and several such processes. Processor "
                  "time on one thread, real time on several, relative to `low`: medians, least times, in brackets the numbers of simplices.", resolved)
     text += page("operations", "Operations", "`bench/operations.py`: least times of several turns, with one thread and with two in each. In extractions: "
                  "divided by the time of `extract` on one thread.", operations)
