@@ -102,11 +102,10 @@ void require_output_holds(const fs::path& output, int simplex_dim) {
   const MeshFileFormat* const format = find_mesh_file_format(output);
   const std::string extension = output.extension().string();
   if (format == nullptr || simplex_dim > format->most_dim)
-    fail(
-        output,
-        fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf, or a surface: cut the contour "
-                    "first ('tegl slice')",
-                    extension, simplex_dim + 1, io_detail::simplex_name(simplex_dim).plural, simplex_dim + 1));
+    fail(output,
+         fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf, or a surface: slice the "
+                     "contour first ('tegl slice')",
+                     extension, simplex_dim + 1, io_detail::simplex_name(simplex_dim).plural, simplex_dim + 1));
   if (simplex_dim < format->least_dim)
     fail(output, fmt::format("'{}' cannot hold a {}D contour, which is made of lines; expected .ply, .gltf, .glb, .obj "
                              "or .vtkhdf",

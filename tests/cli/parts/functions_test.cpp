@@ -211,7 +211,7 @@ TEST(Output, FormatsHoldTheDimensionsThatTheyHold) {
   for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.stl", "a.obj"}) {
     const Error error = error_of([&] { require_output_holds(name, 3); });
     EXPECT_EQ(error.code(), ErrorCode::WriteFailed);
-    EXPECT_THAT(error.what(), HasSubstr("expected .vtkhdf, or a surface: cut the contour first ('tegl slice')"));
+    EXPECT_THAT(error.what(), HasSubstr("expected .vtkhdf, or a surface: slice the contour first ('tegl slice')"));
   }
   const Error lines = error_of([] { require_output_holds("a.stl", 1); });
   EXPECT_EQ(lines.code(), ErrorCode::WriteFailed);
