@@ -471,7 +471,7 @@ AnyContour cut_of(const AnyImage& image, double level, int axis, double at, cons
     if constexpr (N >= 3) {
       return {slice_image<Real>(view, level, Hyperplane<N>::across(axis, at), options), level};
     } else {
-      throw Error(ErrorCode::UnsupportedData, fmt::format("a cut of a {}D image; expected 3 to 5 dimensions", N));
+      throw Error(ErrorCode::UnsupportedData, fmt::format("a slice of a {}D image; expected 3 to 5 dimensions", N));
     }
   });
 }

@@ -37,7 +37,7 @@ std::vector<AnyContour> cuts(const AnyContour& contour, const Numbers& normal, c
             for (auto& cut : slice_stack(c, hyperplanes, options)) result.push_back({std::move(cut), contour.isovalue});
             return result;
           } else {
-            throw_dimension("a cut", N, "3 to 5 dimensions");
+            throw_dimension("a slice", N, "3 to 5 dimensions");
           }
         },
         contour.contour);
@@ -165,7 +165,7 @@ std::pair<Numbers, Numbers> measure_cuts_any(const AnyContour& contour, const Nu
             }
             return result;
           } else {
-            throw_dimension("measures of cuts", N, "3 to 5 dimensions");
+            throw_dimension("measures of slices", N, "3 to 5 dimensions");
           }
         },
         contour.contour);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Contours (isolines, isosurfaces, space-time isosurfaces) of 2D to 5D arrays. They are oriented manifolds, open only
-at the border of the array and at missing values. The contour of a 4D array can be cut at any time.
+at the border of the array and at missing values. The contour of a 4D array can be sliced at any time.
 
     import numpy, tegl
 

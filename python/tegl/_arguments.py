@@ -497,7 +497,7 @@ def prepare(data, *, spacing=None, origin=None, coords=None, affine=None, mask=N
             if found_axis not in (None, 0, data.ndim - 1):
                 time = data.dims[found_axis]
                 raise ValueError(f"the time '{time}' is between the other axes, {', '.join(map(str, data.dims))}; expected "
-                                 f"it first or last: data.transpose('{time}', ...); or time_axis=0 or -1, for cuts and "
+                                 f"it first or last: data.transpose('{time}', ...); or time_axis=0 or -1, for slices and "
                                  "tracks along the first or last axis")
             time_axis = found_axis
         data = data.data if isinstance(data.data, np.ndarray) else data.values

@@ -119,7 +119,7 @@ class Contour(ArrayOrdered):
 
     @property
     def time_axis(self) -> int:
-        """The axis across which contours are cut by default, and along which parts are tracked: 0 or N - 1."""
+        """The axis across which contours are sliced by default, and along which parts are tracked: 0 or N - 1."""
         return 0 if self._is_reversed else self.ndim - 1
 
     @property
@@ -151,13 +151,13 @@ class Contour(ArrayOrdered):
         return f"<tegl.Contour{level}: {len(self._core.vertices)} vertices, {len(self._core.simplices)} {what}>"
 
     def _extent_around(self) -> tuple[np.ndarray | None, str]:
-        """The extent for the places of cuts, and its source: the image or, if that is not known, the contour itself."""
+        """The extent for the places of slices, and its source: the image or, if that is not known, the contour itself."""
         if self._extent is not None:
             return self._extent, "image"
         return _outside.extent_around(self.vertices), "contour"
 
     def _has_range(self, direction: Sequence[float]) -> bool:
-        """Whether offsets of cuts in this direction have a range: if not, every one has a cut, or none has."""
+        """Whether offsets of slices in this direction have a range: if not, every one has a slice, or none has."""
         normal = self._listed(direction)
         return self._core.cuts_wrapped(normal) and not self._core.has_all_offsets(normal)
 
@@ -213,7 +213,7 @@ class Contour(ArrayOrdered):
 
     def slice(self, at=None, *, axis: int | str | None = None, normal=None, offset=None, allow_empty: bool = False,
               threads: int = 0, progress: Progress | None = None, **coordinate) -> Contour | list[Contour]:
-        """The cut by a hyperplane: see `tegl.slice`."""
+        """The slice by a hyperplane: see `tegl.slice`."""
         return self._cut(at, axis, normal, offset, allow_empty, threads, progress, coordinate)
 
     def _cut(self, at, axis, normal, offset, allow_empty, threads, progress, more) -> Contour | list[Contour]:
@@ -251,7 +251,7 @@ class Contour(ArrayOrdered):
         return found if several else found[0]
 
     def frame_of(self, *, normal: Sequence[float] | np.ndarray, offset: float) -> Frame:
-        """The place of the cut by a hyperplane in the contour's space: see `tegl.frame_of`."""
+        """The place of the slice by a hyperplane in the contour's space: see `tegl.frame_of`."""
         direction = _arguments.as_numbers("normal", normal, "a number for each axis")
         origin, axes = _tegl.frame_of(self._core, self._listed(direction), _arguments.as_number("offset", offset))
         return Frame(np.array(self._listed(origin)), np.array(self._listed([self._listed(axis) for axis in axes])))
@@ -278,12 +278,12 @@ class Contour(ArrayOrdered):
 
     def measure(self, *, at=None, allow_empty: bool = False, incidence: Incidence | None = None, threads: int = 0,
                 progress: Progress | None = None) -> Measures | CutMeasures:
-        """Size, content, centroid; with `at`, sizes and contents of cuts: see `tegl.measure`."""
+        """Size, content, centroid; with `at`, sizes and contents of slices: see `tegl.measure`."""
         allow_empty = _arguments.as_bool("allow_empty", allow_empty)
         shared = _incidence.core_or_none(incidence)
         if at is not None:
             if shared is not None:
-                raise ValueError("incidence with at=; expected one of them: the measures of cuts need no incidence")
+                raise ValueError("incidence with at=; expected one of them: the measures of slices need no incidence")
             unit = self.axis_units[self.time_axis]
             given = list(at) if _results.is_list(at) else [at]
             places = [_arguments.number_on_axis(place, unit) for place in given]
@@ -439,7 +439,7 @@ class Contour(ArrayOrdered):
         """The values of another array at the vertices, added to the contour as the attribute `name`: #V numbers.
 
         The array (with spacing, origin, coords, ... as in `tegl.contour`) has as many axes as the contour, in the same
-        order, and the same world coordinates; its grid may differ. Later cuts, splits and simplifications of the contour
+        order, and the same world coordinates; its grid may differ. Later slices, splits and simplifications of the contour
         inherit the attribute, and so do its elements.
         """
         given: dict[str, typing.Any] = {"time_axis": self.time_axis, **grid}

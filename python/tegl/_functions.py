@@ -51,7 +51,7 @@ def measure(contour: Contour, *, at: Place | Places | Labelled, allow_empty: boo
 @_arguments.documents("measure", "Measures", "measure_cuts")
 def measure(contour: Contour, *, at=None, allow_empty: bool = False, incidence: Incidence | None = None,
             threads: int = 0, progress: Progress | None = None) -> Measures | CutMeasures:
-    """Size, enclosed content, centroid and box of a contour; or, with `at`, size and content of its cuts at times.
+    """Size, enclosed content, centroid and box of a contour; or, with `at`, size and content of its slices at times.
 
     A time outside of the image is a ValueError, as in `slice`; with `allow_empty` its size and content are 0.
     """
@@ -70,7 +70,7 @@ def components(contour: Contour, *, incidence: Incidence | None = None, threads:
 
 @_arguments.documents("frame_of", "HyperplaneFrame")
 def frame_of(contour: Contour, *, normal: Sequence[float] | np.ndarray, offset: float) -> Frame:
-    """The place of the cut `tegl.slice(contour, normal=normal, offset=offset)` in the contour's space.
+    """The place of the slice `tegl.slice(contour, normal=normal, offset=offset)` in the contour's space.
 
     ::
 
@@ -79,7 +79,7 @@ def frame_of(contour: Contour, *, normal: Sequence[float] | np.ndarray, offset: 
         points = frame.to_space(cut.vertices)                # origin + cut.vertices @ axes
 
     The coordinates of points, vectors and the normal are in the order of the columns of `vertices`. The frame is defined
-    for every contour, also where the cut is empty.
+    for every contour, also where the slice is empty.
     """
     _arguments.core_of(contour)
     return Contour.frame_of(contour, normal=normal, offset=offset)

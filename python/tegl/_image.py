@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Contours of arrays, cuts of contours and of arrays, and images from files."""
+"""Contours of arrays, slices of contours and of arrays, and images from files."""
 
 from __future__ import annotations
 
@@ -337,7 +337,7 @@ def slice(contour_or_array: typing.Any, level: float, *, axis: int | str | None 
 def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | str | None = None, normal=None,
           offset=None, allow_empty: bool = False, threads: int = 0, progress: Progress | None = None,
           **more) -> Contour | list[Contour]:
-    """The cut of a contour by a hyperplane, one dimension lower: a moving surface at one time.
+    """The slice of a contour by a hyperplane, one dimension lower: a moving surface at one time.
 
     ::
 
@@ -353,7 +353,7 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
     durations if the unit is hours, days, ... For 3D and 4D contours.
 
     A place outside of the image (or of the contour, if its image is unknown) is a ValueError with the range and its
-    unit, and so is a level outside of the array's values; with `allow_empty` the cut is empty instead. A cut within the
+    unit, and so is a level outside of the array's values; with `allow_empty` the slice is empty instead. A slice within the
     image that misses the contour is always empty.
     """
     if isinstance(contour_or_array, Contour):
@@ -363,7 +363,7 @@ def slice(contour_or_array, level: float | None = None, *, at=None, axis: int | 
             raise ValueError(f"level is {level} and the first argument a contour, which has its level; expected at=")
         return contour_or_array._cut(at, axis, normal, offset, allow_empty, threads, progress, more)
     if level is None:
-        raise ValueError("no level for the cut of an array; expected tegl.slice(array, level, at=...)")
+        raise ValueError("no level for the slice of an array; expected tegl.slice(array, level, at=...)")
     return _cut_image(contour_or_array, _arguments.as_level(level), at, axis, normal, offset, allow_empty,
                       threads, progress, more)
 
@@ -383,7 +383,7 @@ def _lattice_of(array, lattice: _kinds.Lattice | typing.Literal["cubic"] | None)
 
 
 def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, progress, more) -> Contour | list[Contour]:
-    if normal is not None:  # an oblique cut needs the whole contour
+    if normal is not None:  # an oblique slice needs the whole contour
         whole = contour(array, level, allow_empty=allow_empty, threads=threads,
                         progress=_arguments.part_of(progress, 0.0, 0.5), **more)
         return whole._cut(at, axis, normal, offset, allow_empty, threads, _arguments.part_of(progress, 0.5, 1.0), {})
@@ -413,14 +413,14 @@ def _cut_image(array, level, at, axis, normal, offset, allow_empty, threads, pro
     with prepared.terms():
         found = [cut(i) for i in range(len(wanted))]
     if not allow_empty and found and not any(len(one.simplices) for one in found):
-        _outside.require_level(prepared, level, "cut")
+        _outside.require_level(prepared, level, "slice")
     left = _outside.without_axis(prepared.extent, number)
     cuts = [Contour._of(one, prepared.is_reversed, left) for one in found]
     return cuts if _results.is_list(places) else cuts[0]
 
 
 def _nothing(prepared: _arguments.Prepared, axis: int, level: float, direction: str, kind) -> _tegl.Contour:
-    """The empty cut outside of an image."""
+    """The empty slice outside of an image."""
     def others(labels: Sequence[str]) -> list[str]:
         return prepared.turned([label for number, label in enumerate(labels) if number != axis])
 

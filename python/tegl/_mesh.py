@@ -64,7 +64,7 @@ def contour_mesh(points, cells=None, values=None, level: float | None = None, *,
         the name of an array in its `point_data`; none for the only one.
     times
         Ascending times of the rows of `values`, for N = 2 and 3: the result is the contour in space and time, with the time
-        as the last coordinate; `slice`, `track` and `measure` cut it at any time.
+        as the last coordinate; `slice`, `track` and `measure` slice it at any time.
     attributes
         Other arrays at the points, which are interpolated to the vertices as the coordinates are: a dict of names and
         arrays #P or #P x k (with `times` #T x #P or #T x #P x k); for a mesh also names in its `point_data`.

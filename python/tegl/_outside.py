@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Levels outside of the values, and cuts outside of the data: errors with the range, unless the caller allows empty
-results. A cut within the data that misses the contour is an empty result, not an error.
+"""Levels outside of the values, and slices outside of the data: errors with the range, unless the caller allows empty
+results. A slice within the data that misses the contour is an empty result, not an error.
 
 The extent of an image, or of a contour without one, is an array of 2 x N: the lowest and the highest world coordinate
 along each of the array's axes.
@@ -99,7 +99,7 @@ def require_places(extent: np.ndarray | None, axis: int, places: Sequence[float]
         called = f"axis {axis}" + (f" ('{name}')" if name else "")
         said_as = "" if isinstance(said, (int, float, np.number)) else f" ({said})"
         raise ValueError(f"the place along {called} is {place}{said_as}; expected a place between {low} and {high}"
-                         f"{' ' + unit if unit else ''}, the ends of the {of}, {ALLOWED.format('cut')}")
+                         f"{' ' + unit if unit else ''}, the ends of the {of}, {ALLOWED.format('slice')}")
 
 
 def extent_around(vertices: np.ndarray) -> np.ndarray | None:
@@ -120,4 +120,4 @@ def require_offsets(extent: np.ndarray | None, normal: Sequence[float], offsets:
     for offset in offsets:
         if np.isfinite(offset) and not low - slack <= offset <= high + slack:
             raise ValueError(f"offset is {offset}; expected an offset between {low:g} and {high:g}, the ends of the {of} along this "
-                             f"normal, {ALLOWED.format('cut')}")
+                             f"normal, {ALLOWED.format('slice')}")

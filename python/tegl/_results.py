@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Results of operations on contours, and the places of cuts of contours and arrays."""
+"""Results of operations on contours, and the places of slices of contours and arrays."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ class MeshReport:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Frame:
-    """Coordinates in a hyperplane of N-space, those of its cuts: see `tegl.frame_of`."""
+    """Coordinates in a hyperplane of N-space, those of its slices: see `tegl.frame_of`."""
 
     origin: np.ndarray  #: N coordinates of the point of the hyperplane that is nearest to 0
-    axes: np.ndarray  #: N - 1 rows: orthonormal vectors of N-space, one for each column of the cut's vertices
+    axes: np.ndarray  #: N - 1 rows: orthonormal vectors of N-space, one for each column of the slice's vertices
 
     def to_space(self, points) -> np.ndarray:
-        """Points of a cut, such as its vertices (#P x N - 1, or one point), in the space of the contour: #P x N."""
-        return self.origin + self._numbers("points of a cut", points, len(self.axes)) @ self.axes
+        """Points of a slice, such as its vertices (#P x N - 1, or one point), in the space of the contour: #P x N."""
+        return self.origin + self._numbers("points of a slice", points, len(self.axes)) @ self.axes
 
     def to_plane(self, points) -> np.ndarray:
         """Coordinates of points of N-space (#P x N, or one point) in the hyperplane, after orthogonal projection."""
@@ -100,11 +100,11 @@ class Measures:
 
 @dataclasses.dataclass(frozen=True)
 class CutMeasures:
-    """Measures of the cuts of a contour, one entry per cut."""
+    """Measures of the slices of a contour, one entry per slice."""
 
     at: np.ndarray
-    size: np.ndarray  #: length (3D), area (4D), 3-volume (5D) of the cut
-    content: np.ndarray  #: the enclosed area, volume, ...; NaN if the cut is open
+    size: np.ndarray  #: length (3D), area (4D), 3-volume (5D) of the slice
+    content: np.ndarray  #: the enclosed area, volume, ...; NaN if the slice is open
 
 
 @dataclasses.dataclass(frozen=True)
@@ -232,7 +232,7 @@ class MergeReport:
 
 
 def named_axis(names: Sequence[str], ndim: int, time_axis: int, at, axis, more: dict) -> tuple[int, typing.Any]:
-    """The axis and the place of a cut; names of axes are removed from `more`."""
+    """The axis and the place of a slice; names of axes are removed from `more`."""
     if at is None and not any(names):
         for name, place in more.items():  # such as x=2
             if name not in _arguments.EXTRACT_OPTIONS:

@@ -98,7 +98,7 @@ def test_frames_place_cuts_of_crystals_and_name_wrong_numbers():
         found = np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x)
         assert np.abs(found - 0.01).max() < 0.05
     frame = cell.frame_of(normal=(1, 1, 1), offset=0.4)
-    with pytest.raises(ValueError, match=r"points of a cut have the shape \(4, 3\); expected 2 coordinates each"):
+    with pytest.raises(ValueError, match=r"points of a slice have the shape \(4, 3\); expected 2 coordinates each"):
         frame.to_space(np.zeros((4, 3)))
     with pytest.raises(ValueError, match=r"points have the shape \(2,\); expected 3 coordinates each"):
         frame.to_plane((1.0, 2.0))

@@ -16,7 +16,7 @@ MOVING = tegl.contour(noise((5, 6, 7, 8), 0), 0.1)
 INDEX = tegl.Index(VOLUME)
 CORNERS, FACE = np.eye(3), [[0, 1, 2]]
 OUTSIDE = ("the place along %s is 30.0; expected a place between 0.0 and %s, the ends of the image, or allow_empty=True for an "
-           "empty cut")
+           "empty slice")
 THREADS = "threads is -1; expected 0 (all) or more"
 
 
@@ -275,7 +275,7 @@ def test_a_level_outside_of_the_values_is_an_error_that_names_them():
     assert said(lambda: contour(level=below)) == f"level is {below}; {expected}", "all samples are at or above it"
     assert said(lambda: INDEX.contour(above)) == f"level is {above}; {expected}"
     assert said(lambda: INDEX.pick((1, 2, 3), above)) == f"level is {above}; {expected}"
-    cut = expected.replace("empty contour", "empty cut")
+    cut = expected.replace("empty contour", "empty slice")
     assert said(lambda: tegl.slice(VOLUME, above, at=2)) == f"level is {above}; {cut}"
     assert said(lambda: tegl.slice(VOLUME, above, at=[2, 3])) == f"level is {above}; {cut}"
     assert said(lambda: tegl.slice(VOLUME, above, normal=(1, 1, 0), offset=5)) == f"level is {above}; {expected}"
@@ -315,7 +315,7 @@ def test_a_place_outside_of_the_image_is_an_error_with_its_unit(dtype):
     moving = tegl.contour(hourly(), 0.1, dtype=dtype)
     most = moving.vertices.dtype.type(5 / 24)
     text = (f"the place along axis 0 ('time') is 31.25; expected a place between 0.0 and {most!s} days since 2020-01-01T00:00:00, the "
-            "ends of the image, or allow_empty=True for an empty cut")
+            "ends of the image, or allow_empty=True for an empty slice")
     calls = {"slice": lambda **more: moving.slice(31.25, **more), "slices": lambda **more: moving.slice([0.1, 31.25], **more),
              "name": lambda **more: moving.slice(time=31.25, **more), "measure": lambda **more: moving.measure(at=31.25, **more),
              "measures": lambda **more: tegl.measure(moving, at=[0.1, 31.25], **more),
@@ -341,7 +341,7 @@ def test_oblique_planes_outside_of_the_image_are_an_error():
     moving = contour()
     assert said(lambda: moving.slice(normal=(1, 1, 0), offset=99)) == (
         "offset is 99.0; expected an offset between 0 and 13, the ends of the image along this normal, or allow_empty=True for an "
-        "empty cut")
+        "empty slice")
     assert "normal of a hyperplane that is 0" in said(lambda: moving.slice(normal=(0, 0, 0), offset=99))
     assert "offset is 8.0; expected an offset between -7 and 6, " in said(lambda: moving.slice(normal=(1, -1, 0), offset=[-1, 8]))
     assert len(moving.slice(normal=(1, 1, 0), offset=99, allow_empty=True).simplices) == 0

@@ -201,7 +201,7 @@ TEST_F(MeasureCommand, OfAnOpenContourSaysSo) {
 TEST_F(MeasureCommand, OfATimeOutsideIsRefused) {
   const RunResult run = run_tegl({"measure", file_, "--iso", "0", "--at", "z=-1"});
   EXPECT_EQ(run.exit, 5);
-  EXPECT_THAT(run.err, HasSubstr("the cut at z = -1 lies outside of the image; expected "));
+  EXPECT_THAT(run.err, HasSubstr("the slice at z = -1 lies outside of the image; expected "));
 }
 
 TEST_F(MeasureCommand, OverTimeIsThatOfTheCuts) {
@@ -232,7 +232,7 @@ TEST_F(MeasureCommand, RefusesWhatItCannotCut) {
   refused({"--at", "x=3"}, 2, "expected z=3");
   refused({"--at", "7"}, 2, "--at is '7'");
   refused({"--samples", "1"}, 2, "--samples");
-  refused({"--csv", path("a.csv")}, 2, "--csv without cuts");
+  refused({"--csv", path("a.csv")}, 2, "--csv without slices");
   EXPECT_THAT(files(), ElementsAre("balls.nii"));
 }
 

@@ -135,7 +135,7 @@ TEST_F(Contour, GoesIntoStlAndObjWhereTheseHoldIt) {
   };
   refused({disc_file}, "'.stl' cannot hold a 2D contour, which is made of lines");
   refused({write("balls.nii", nifti_bytes(merging_balls(18, 5), {1, 1, 1, 1}))},
-          "cut the contour first ('tegl slice')");
+          "slice the contour first ('tegl slice')");
   refused({ball_file, "--normals"}, "cannot hold normals of vertices");
   refused({ball_file, "--attribute", ball_file}, "cannot hold attributes");
   refused({ball_file, "--stream"}, "expected .vtkhdf");

@@ -168,14 +168,15 @@ TEST_F(EmptyResults, OfCutsOutsideOfTheExtentAreErrorsUnlessAllowed) {
     for (const char* const name : {"list_1.ply", "list_2.ply", "list_3.ply"})
       EXPECT_FALSE(std::filesystem::exists(path(name))) << at;
   }
-  expect_outside({"slice", balls_, "--iso", "0", "--at", "t=1,2,99", "-o", path("list_{n}.ply")}, "the cut at t = 99");
+  expect_outside({"slice", balls_, "--iso", "0", "--at", "t=1,2,99", "-o", path("list_{n}.ply")},
+                 "the slice at t = 99");
   EXPECT_FALSE(read_mesh(path("list_1.ply")).simplices.empty());
   expect_empty_mesh("list_3.ply", 2);
   expect_outside({"slice", balls_, "--iso", "0", "--plane", "1,0,0,1=99", "-o", path("cut.ply")},
-                 "the cut at x + t = 99 lies outside of the image; expected 0 <= x + t <= 14");
+                 "the slice at x + t = 99 lies outside of the image; expected 0 <= x + t <= 14");
   expect_outside({"slice", saved, "--plane", "1,0,0,1=99", "-o", path("cut.ply")}, "lies outside of the saved contour");
   const RunResult image = expect_outside({"measure", balls_, "--iso", "0", "--at", "t=3.5", "--json"},
-                                         "the cut at t = 3.5 lies outside of the image; expected 0 <= t <= 3");
+                                         "the slice at t = 3.5 lies outside of the image; expected 0 <= t <= 3");
   EXPECT_EQ(image.json()["cuts"][0]["size"], 0);
   expect_outside({"measure", saved, "--at", "t=3.5"}, "lies outside of the saved contour");
 }

@@ -478,6 +478,8 @@ TEST_F(Errors, MessagesAboutOptionsHaveOneForm) {
   expect_failure(2, {"contour", ball_file(), "--iso", "0"}, {"--output is missing; expected --output FILE"});
   expect_failure(2, {"contour", "--iso", "0", "-o", path("a.ply")}, {"FILE is missing; expected the image"});
   expect_failure(2, {"demo", "film"}, {"unexpected argument 'film'; expected none"});
+  expect_failure(2, {"demo", "film", "2"}, {"unexpected arguments 'film', '2'; expected none"});
+  expect_failure(2, {"demo", "--", "film", "2"}, {"unexpected arguments 'film', '2'; expected none"});
   expect_failure(2, {}, {"no command; expected info, contour, slice"});
   expect_failure(2, {"simplify", ball_file(), "--iso", "0", "--ratio", "10%", "-o", path("a.ply")},
                  {"--ratio is '10%'; expected a number from 0 to 1"});
@@ -488,7 +490,15 @@ TEST_F(Errors, MessagesAboutOptionsHaveOneForm) {
 TEST_F(Errors, FilesOfTheOtherKindAreNamed) {
   ASSERT_EQ(run_tegl({"contour", ball_file(), "--iso", "0", "-o", path("saved.ply"), "-q"}).exit, 0);
   expect_failure(4, {"contour", path("saved.ply"), "--iso", "0", "-o", path("a.ply")},
-                 {"saved.ply: holds a mesh, such as a saved contour; expected an image"});
+                 {"saved.ply: holds a mesh, such as a saved contour; expected an image: 'tegl check' and 'tegl slice' "
+                  "take meshes"});
+  ASSERT_EQ(run_tegl({"contour", ball_file(), "--iso", "0", "-o", path("saved.vtkhdf"), "-q"}).exit, 0);
+  const std::string mesh =
+      "saved.vtkhdf: holds a mesh (VTKHDF), such as a saved contour; expected an image: 'tegl "
+      "check' and 'tegl slice' take meshes";
+  expect_failure(4, {"contour", path("saved.vtkhdf"), "--iso", "0", "-o", path("a.ply")}, {mesh});
+  expect_failure(4, {"contour", ball_file(), "--iso", "0", "--attribute", path("saved.vtkhdf"), "-o", path("a.ply")},
+                 {mesh});
   expect_failure(4, {"check", ball_file()}, {"ball.nrrd: no saved contour, by its name; expected .ply"});
   const std::string table = write("two.csv", "x,y,v,w\n0,0,0,1\n1,0,1,1\n0,1,2,1\n");
   expect_failure(2, {"contour", table, "--iso", "0.5", "-o", path("a.ply")},

@@ -109,6 +109,27 @@ TEST_F(Raw, RemarksOnBytesAfterTheLastSample) {
   EXPECT_EQ(run({"info", raw_, "--raw-offset", "480"}).err, "") << "bytes before the first sample are skipped";
 }
 
+TEST_F(Raw, RemarksOnBytesOfAllFilesOfASeries) {
+  std::vector<std::string> files;
+  for (const std::size_t rest : {0U, 8U, 4U, 4U, 4U})
+    files.push_back(write("step_" + std::to_string(files.size()) + ".raw", std::string(4 * 6 + rest, '\1')));
+  const auto remark = [&](std::vector<std::size_t> chosen) {
+    std::vector<std::string> arguments = {"info", "--json", "--raw", "3x2", "--raw-type", "float"};
+    for (const std::size_t file : chosen) arguments.push_back(files[file]);
+    const RunResult run = run_tegl(arguments);
+    EXPECT_EQ(run.exit, 0) << run.err;
+    const nlohmann::json remarks = run.json()["remarks"];
+    EXPECT_LE(remarks.size(), 1u);
+    return remarks.empty() ? std::string() : remarks[0].get<std::string>();
+  };
+  const std::string samples = " follow the last of 3 x 2 samples of type float, and are ignored";
+  EXPECT_EQ(remark({0, 2}), files[2] + ": 4 of 28 bytes" + samples);
+  EXPECT_EQ(remark({2, 0, 3}), files[2] + ", " + files[3] + ": 4 bytes of each" + samples);
+  EXPECT_EQ(remark({1, 2, 3}), files[1] + ", " + files[2] + ", " + files[3] + ": 4 to 8 bytes of each" + samples);
+  EXPECT_EQ(remark({0, 1, 2, 3, 4}), "4 of 5 files, the first " + files[1] + ": 4 to 8 bytes of each" + samples);
+  EXPECT_EQ(run_tegl({"info", "--raw", "3x2", "--raw-type", "float", "--raw-offset", "4", files[2], files[3]}).err, "");
+}
+
 TEST_F(Raw, NamesWhatDoesNotFitItsSizes) {
   const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& text) {
     const RunResult run = contour("out.ply", more);

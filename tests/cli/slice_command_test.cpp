@@ -156,8 +156,8 @@ TEST_F(Slice, ReportsWrongCutsBeforeItReadsSamples) {
   const auto cut = [&](const std::string& at) {
     return run_tegl({"slice", damaged, "--iso", "0", "--at", at, "-o", path("out.ply")});
   };
-  EXPECT_THAT(cut("t=9").err, HasSubstr("the cut at t = 9 lies outside of the image"));
-  EXPECT_THAT(cut("x=9").err, HasSubstr("the cut at x = 9 lies outside of the image"));
+  EXPECT_THAT(cut("t=9").err, HasSubstr("the slice at t = 9 lies outside of the image"));
+  EXPECT_THAT(cut("x=9").err, HasSubstr("the slice at x = 9 lies outside of the image"));
   EXPECT_THAT(cut("q=1").err, HasSubstr("--at q=1 names no axis"));
   const RunResult inside = cut("t=1.5");
   EXPECT_EQ(inside.exit, 4) << inside.err;
@@ -376,8 +376,8 @@ TEST_F(Slice, AcrossLongitudesTakesPlacesATurnAway) {
       };
       const std::string expected = cut("lon=195");
       for (const char* const place : {"lon=-165", "lon=555"}) EXPECT_EQ(cut(place), expected) << place;
-      EXPECT_THAT(run_tegl(arguments("lon=0")).err, HasSubstr("the cut at lon = 0 lies outside of the"));
-      EXPECT_THAT(run_tegl(arguments("q=-340")).err, HasSubstr("the cut at q = -340 lies outside of the"));
+      EXPECT_THAT(run_tegl(arguments("lon=0")).err, HasSubstr("the slice at lon = 0 lies outside of the"));
+      EXPECT_THAT(run_tegl(arguments("q=-340")).err, HasSubstr("the slice at q = -340 lies outside of the"));
     }
   }
 }
@@ -495,17 +495,17 @@ TEST_F(Slice, ErrorsOfCutsFarFromAPeriodNameTheCutAndItsOwnNumbers) {
   };
   const std::string cube = saved("cube", "(1,0,0) (0,1,0) (0,0,1)"),
                     oblique = saved("oblique", "(1,0,0) (0,1,0) (0.5,0,1)");
-  refused(
-      {cube, "--plane", "0,3,3=1,1e12"},
-      "the cut at 3 y + 3 z = 1e12: a cut across a period has the coordinate 1000000000000 along the normal, with the "
-      "period 36 from 0; expected at most 536870912 periods from there");
+  refused({cube, "--plane", "0,3,3=1,1e12"},
+          "the slice at 3 y + 3 z = 1e12: a slice across a period has the coordinate 1000000000000 along the normal, "
+          "with the "
+          "period 36 from 0; expected at most 536870912 periods from there");
   refused({oblique, "--at", "z=1e12", "--scale", "z=10"},
-          "the cut at z = 1e12, on axes scaled by --scale: a cut across a period has the coordinate 10000000000000 "
+          "the slice at z = 1e12, on axes scaled by --scale: a slice across a period has the coordinate 10000000000000 "
           "along the axis z, with the period 120 from 0");
   // it does repeat itself, but not within 32 periods
   const RunResult steep = run_tegl({"slice", cube, "--plane", "33,1,0=20", "-o", path("cut.vtkhdf")});
   EXPECT_EQ(steep.exit, 0) << steep.err;
-  EXPECT_THAT(steep.err, HasSubstr("unrolled for cuts along which it does not repeat itself within 32 periods"));
+  EXPECT_THAT(steep.err, HasSubstr("unrolled for slices along which it does not repeat itself within 32 periods"));
 }
 
 TEST_F(Slice, ThroughVerticesNamesTheReasonOfZeroSizes) {
@@ -514,7 +514,7 @@ TEST_F(Slice, ThroughVerticesNamesTheReasonOfZeroSizes) {
   ASSERT_EQ(run_tegl({"contour", image, "--iso", "0.1", "--epsilon", "0.01", "-o", path("all.vtkhdf"), "-q"}).exit, 0);
   const RunResult run = run_tegl({"slice", path("all.vtkhdf"), "--plane", "0,0,1,1=0.9", "-o", path("cut.vtkhdf")});
   EXPECT_EQ(run.exit, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("of zero size (the cut passes through vertices of the contour, or samples equal"));
+  EXPECT_THAT(run.out, HasSubstr("of zero size (the slice passes through vertices of the contour, or samples equal"));
 }
 
 TEST_F(Slice, AStackIsEachOfItsCuts) {

@@ -42,6 +42,7 @@ PUBLIC = {
 SHARED = {
     "apps/cli": [
         "io/base/pending_path.hpp",
+        "io/base/simplex_names.hpp",
         "io/base/text.hpp",
         "io/images/series_request.hpp",
         "io/meshes/contour_file.hpp",

@@ -4,11 +4,13 @@
 #include "base/parse_errors.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/suggestions.hpp"
 
@@ -83,6 +85,16 @@ std::string of_missing(const CLI::App& command, const std::string& what) {
   return fmt::format("{} is missing; expected {}", named->first, usage_of(command, named->first));
 }
 
+/// Arguments after the expected ones, as given: CLI11's message has them in reverse order. The error's name is that of
+/// the command, or of the program, which gets the arguments after a `--`.
+std::string of_surplus(const CLI::App& command, const CLI::ParseError& error) {
+  const bool is_of_parent = command.get_name() != error.get_name() && command.get_parent() != nullptr;
+  std::vector<std::string> surplus = (is_of_parent ? *command.get_parent() : command).remaining();
+  std::erase(surplus, "--");
+  return fmt::format("unexpected argument{} '{}'; expected none", surplus.size() == 1 ? "" : "s",
+                     fmt::join(surplus, "', '"));
+}
+
 }  // namespace
 
 std::string parse_error_text(const CLI::App& command, const CLI::ParseError& error) {
@@ -97,9 +109,7 @@ std::string parse_error_text(const CLI::App& command, const CLI::ParseError& err
   if (kind == "RequiresError")
     if (const auto pair = parts_of(what, " requires "))
       return fmt::format("{} without {}; expected both", pair->first, pair->second);
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError))  // its name is the command's
-    if (const auto pair = parts_of(what, "not expected: "))
-      return fmt::format("unexpected argument '{}'; expected none", pair->second);
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) return of_surplus(command, error);
   return what;
 }
 

@@ -219,7 +219,8 @@ class CheckCommand final : public Command {
   static Wording wording() {
     Wording wording;
     wording.no_size =
-        "if tegl made the contour: samples equal the isovalue, which 'tegl contour --epsilon' avoids, or a cut passes "
+        "if tegl made the contour: samples equal the isovalue, which 'tegl contour --epsilon' avoids, or a slice "
+        "passes "
         "through vertices of its contour";
     return wording;
   }

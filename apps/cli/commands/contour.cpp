@@ -48,7 +48,7 @@ constexpr const char* kContourExamples =
     "  tegl contour cavity.pvd --var p --iso 0 -o p.vtkhdf               (a mesh over time)\n"
     "  tegl contour flow.raw --raw 512x512x512x1000 --raw-type float --iso 0.1 -o flow.vtkhdf\n"
     "A file of 2 to 5 dimensions gives segments, triangles, tetrahedra or 4-simplices.\n"
-    "'tegl slice' cuts all except segments.";
+    "'tegl slice' takes all except segments.";
 
 class ContourCommand final : public Command {
  public:

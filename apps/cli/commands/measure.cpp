@@ -53,15 +53,15 @@ class MeasureCommand final : public ContourInputCommand {
                             "Measure a contour: length, area or volume, enclosed volume, and both over time") {
     app()
         .add_option("--at", at_,
-                    "measure the cuts at these times too: t=7.3, or the name of the last axis; t=1,2.5 for several")
+                    "measure the slices at these times too: t=7.3, or the name of the last axis; t=1,2.5 for several")
         ->allow_extra_args(false)
         ->type_name("AXIS=NUMBER");
     app()
         .add_option("--samples", samples_,
-                    "measure this many cuts too, evenly spaced from the contour's first to its last time")
+                    "measure this many slices too, evenly spaced from the contour's first to its last time")
         ->check(whole_number(2, 1000000))
         ->type_name("COUNT");
-    app().add_option("--csv", csv_, "the measures of the cuts as CSV")->type_name("FILE");
+    app().add_option("--csv", csv_, "the measures of the slices as CSV")->type_name("FILE");
     app().footer(kMeasureExamples);
   }
 
@@ -71,7 +71,7 @@ class MeasureCommand final : public ContourInputCommand {
     if (!csv_.empty()) {
       require_text_output(csv_, files());
       if (cuts.empty() && samples_ == 0)
-        throw Error(ErrorCode::InvalidArgument, "--csv without cuts; expected also --at or --samples");
+        throw Error(ErrorCode::InvalidArgument, "--csv without slices; expected also --at or --samples");
     }
     ProgressBar bar(streams.err, wants_progress());
     const ContourInput input = read_contour(bar);
@@ -93,7 +93,8 @@ class MeasureCommand final : public ContourInputCommand {
   void require_axis(const std::vector<Cut>& cuts, const ContourInput& input) const {
     const int last = input.space_dim() - 1;
     if (last < 2 && (!cuts.empty() || samples_ > 0))
-      throw Error(ErrorCode::UnsupportedData, "holds a 2D contour, whose cuts are points; expected a 3D, 4D or 5D one");
+      throw Error(ErrorCode::UnsupportedData,
+                  "holds a 2D contour, whose slices are points; expected a 3D, 4D or 5D one");
     for (const Cut& cut : cuts) {
       if (equal_ignoring_case(cut.axis, input.axis_name(last)) || cut.axis == std::string(1, "xyztu"[last])) continue;
       throw Error(ErrorCode::InvalidArgument,
@@ -166,7 +167,7 @@ class MeasureCommand final : public ContourInputCommand {
     const std::span<const double> vertices(contour.vertices.empty() ? nullptr : contour.vertices.front().data(),
                                            contour.vertices.size() * N);
     std::vector<CutMeasures> result =
-        measure_cuts(contour, meet_vertices(std::move(places), vertices, N, N - 1), {threads(), bar.stage("cuts")});
+        measure_cuts(contour, meet_vertices(std::move(places), vertices, N, N - 1), {threads(), bar.stage("slices")});
     for (std::size_t i = 0; i < at.size(); ++i) result[i].at = at[i];
     return result;
   }

@@ -30,7 +30,7 @@ constexpr const char* kProjectExamples =
     "Examples:\n"
     "  tegl project heart.nii.gz --iso 400 --close -o swept.glb          (the space that the wall sweeps, by time)\n"
     "  tegl project fingers.vtkhdf --as cuts --count 6 -o positions.ply  (six positions in one file)\n"
-    "  tegl project fingers.vtkhdf --as tetrahedra -o all.vtkhdf         (everything; cut or clip it in ParaView)\n"
+    "  tegl project fingers.vtkhdf --as tetrahedra -o all.vtkhdf         (everything; slice or clip it in ParaView)\n"
     "  tegl project fingers.vtkhdf --along 1,0,0,0 -o along_x.vtkhdf     (an outline in y, z and t)\n"
     "The attribute t (or the axis's name) is the time; color shows it from dark blue (first) to yellow (last). The\n"
     "outline of a contour that is not closed (--close) is open at the first and the last time.";
@@ -102,7 +102,8 @@ class ProjectCommand final : public ContourInputCommand {
       : ContourInputCommand(program, "project",
                             "Project a 4D contour into space, coloured by time: the region that it sweeps") {
     app()
-        .add_option("--as", kind_, "kind of result: the outline of the projection, cuts in one file, or all tetrahedra")
+        .add_option("--as", kind_,
+                    "kind of result: the outline of the projection, slices in one file, or all tetrahedra")
         ->check(CLI::IsMember({"outline", "cuts", "tetrahedra"}))
         ->capture_default_str();
     app()
@@ -112,7 +113,7 @@ class ProjectCommand final : public ContourInputCommand {
         .add_option("--eye", eye_, "perspective: distance of the eye before the first time; 0: parallel projection")
         ->type_name("NUMBER");
     app()
-        .add_option("--count", count_, "number of cuts with --as cuts")
+        .add_option("--count", count_, "number of slices with --as cuts")
         ->check(whole_number(1, 100000))
         ->type_name("COUNT")
         ->capture_default_str();
@@ -175,7 +176,7 @@ class ProjectCommand final : public ContourInputCommand {
     Wording wording;
     const std::string along = along_.empty() ? "time" : along_;
     wording.heading = kind_ == "outline" ? fmt::format("Outline of a contour in 4D along {}", along)
-                      : kind_ == "cuts"  ? fmt::format("{} cuts of a contour in 4D along {}", count_, along)
+                      : kind_ == "cuts"  ? fmt::format("{} slices of a contour in 4D along {}", count_, along)
                                          : fmt::format("Tetrahedra of a contour in 4D, seen along {}", along);
     wording.unchecked = no_check_ ? "skipped" : "skipped: projected tetrahedra overlap and are not a manifold";
     if (kind_ == "outline") {

@@ -43,14 +43,14 @@ constexpr const char* kSliceExamples =
     "  tegl slice ocean.vtkhdf --at x=329.5 -o meridian.vtkhdf       (a surface in y, z and t)\n"
     "  tegl slice ocean.vtkhdf --at t=7.3 --attribute ocean.nc -o july.ply\n"
     "  tegl slice ocean.vtkhdf --plane 1,0,0,5=200 --scale t=10 -o moving.vtkhdf   (where x + 5 t = 200)\n"
-    "An axis has the name in the file or x, y, z, t, u; numbers are in its unit and need not be whole. A cut across\n"
-    "an axis has the other axes as its coordinates; other cuts have orthonormal ones, which --json reports as\n"
-    "'frame'.\n"
-    "For an image, only the layers next to each cut are contoured; all of them with --plane, --periodic, --lattice,\n"
-    "--division and --samples-are cells. A saved contour is cut directly, all cuts of one direction in one pass.\n"
-    "Every place on a periodic axis has a cut. If all axes are periodic, so has every lattice plane.\n"
+    "An axis has the name in the file or x, y, z, t, u; numbers are in its unit and need not be whole. A slice\n"
+    "across an axis has the other axes as its coordinates; other slices have orthonormal ones, which --json reports\n"
+    "as 'frame'.\n"
+    "For an image, only the layers next to each slice are contoured; all of them with --plane, --periodic, --lattice,\n"
+    "--division and --samples-are cells. A saved contour is sliced directly, all slices of one direction in one pass.\n"
+    "Every place on a periodic axis has a slice. If all axes are periodic, so has every lattice plane.\n"
     "At a layer of the image, a saved 5D contour by --ambiguity low or high has other tetrahedra than the layer's\n"
-    "contour, with the same topology: cut the image for the layer's own.";
+    "contour, with the same topology: slice the image for the layer's own.";
 
 void require_cuttable(int dim, std::string_view what) {
   if (dim >= 3 && dim <= 5) return;
@@ -105,7 +105,7 @@ void require_near_periods(const Contour<N, Real>& contour, const Cut& cut, const
     (void)slice(empty, hyperplane_of<N>(cut, factors));
   } catch (const Error& error) {
     const bool is_scaled = std::any_of(factors.begin(), factors.end(), [](double factor) { return factor != 1.0; });
-    throw Error(error.code(), fmt::format("the cut at {} = {}{}: {}", cut.axis, cut.text,
+    throw Error(error.code(), fmt::format("the slice at {} = {}{}: {}", cut.axis, cut.text,
                                           is_scaled ? ", on axes scaled by --scale" : "", error.what()));
   }
 }
@@ -237,18 +237,18 @@ void add_attributes(const AttributeOptions& attributes, const ReadImageOptions& 
 class SliceCommand final : public Command {
  public:
   explicit SliceCommand(CLI::App& program)
-      : Command(program, "slice", "Cut a contour at a time, or by any other hyperplane",
+      : Command(program, "slice", "Slice a contour at a time, or by any other hyperplane",
                 "an image in 3D to 5D, a 4D or 3D mesh, or a contour in 3D to 5D saved by 'tegl contour' (.vtkhdf ...)",
                 Files::image) {
     app()
         .add_option("--at", at_,
-                    "axis and coordinate of the cut, in the unit of the axis: t=7.3, x=2; t=1,2.5 for several; "
+                    "axis and coordinate of the slice, in the unit of the axis: t=7.3, x=2; t=1,2.5 for several; "
                     "t=0:10:21 for 21 from 0 to 10")
         ->allow_extra_args(false)
         ->type_name("AXIS=NUMBERS");
     app()
         .add_option("--plane", planes_,
-                    "cuts by the hyperplane with this normal: 1,0,0,5=2 is where x + 5 t = 2; several as with --at")
+                    "slices by the hyperplane with this normal: 1,0,0,5=2 is where x + 5 t = 2; several as with --at")
         ->allow_extra_args(false)
         ->type_name("A,B,..=NUMBERS");
     app()
@@ -295,7 +295,7 @@ class SliceCommand final : public Command {
                                          : are_cell_meshes(files(), images())     ? cut_cell_mesh(std::move(cuts), bar)
                                                                                   : cut_image(std::move(cuts), bar);
     if (attributes_.wanted() && results[0].image_dim == 5)
-      throw Error(ErrorCode::InvalidArgument, "--attribute with a cut of a 5D contour; expected a 3D or 4D contour");
+      throw Error(ErrorCode::InvalidArgument, "--attribute with a slice of a 5D contour; expected a 3D or 4D contour");
     const bool of_mesh = are_cell_meshes(files(), images());
     if (attributes_.wanted() && results[0].image_dim == 4)
       add_attributes<4>(attributes_, image_options(), factors_, wrapped_.periods, options_.threads(),
@@ -347,7 +347,7 @@ class SliceCommand final : public Command {
       ContourResult& result = results.emplace_back();
       result.cut = std::move(cut);
       result.wording.no_size =
-          "the cut passes through vertices of the contour, or samples equal the isovalue, which --epsilon avoids";
+          "the slice passes through vertices of the contour, or samples equal the isovalue, which --epsilon avoids";
     }
     for (std::size_t i = 0; i < results.size(); ++i) results[i].output = outputs_[i];
     return results;

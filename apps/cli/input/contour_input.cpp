@@ -242,7 +242,7 @@ AnyContour to_any_contour(Mesh&& mesh) {
 
 void throw_5d() {
   throw Error(ErrorCode::UnsupportedData,
-              "holds a 5D contour; expected one in 2 to 4 dimensions: cut it first ('tegl slice')");
+              "holds a 5D contour; expected one in 2 to 4 dimensions: slice it first ('tegl slice')");
 }
 
 MeshSize ContourInput::size() const {

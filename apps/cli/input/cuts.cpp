@@ -355,9 +355,9 @@ std::vector<double> meet_vertices(std::vector<double> values, std::span<const do
 
 EmptyResult outside_error(const Cut& cut, const CutAxis& axis, std::string_view of) {
   const auto texts = numbers_apart({axis.first, axis.last, cut.level.value_or(cut.value)});
-  return EmptyResult(
-      fmt::format("the cut at {} = {} lies outside of the {}; expected {} <= {} <= {} (--allow-empty: an empty cut)",
-                  cut.axis, cut.text, of, texts[0], axis.name, texts[1]));
+  return EmptyResult(fmt::format(
+      "the slice at {} = {} lies outside of the {}; expected {} <= {} <= {} (--allow-empty: an empty slice)", cut.axis,
+      cut.text, of, texts[0], axis.name, texts[1]));
 }
 
 std::vector<Cut> resolve(std::vector<Cut> cuts, const CutSpace& space, bool allow_empty) {
@@ -402,8 +402,8 @@ std::vector<std::string> cut_outputs(const std::string& pattern, const std::vect
     replace_place(output, outputs.size() + 1, cuts.size());
     if (std::find(outputs.begin(), outputs.end(), output) != outputs.end()) {
       throw Error(ErrorCode::InvalidArgument,
-                  fmt::format("--output is '{}' for two cuts; expected {{t}} or {{n}} in it (and {{axis}} if there "
-                              "are several axes), and each cut once",
+                  fmt::format("--output is '{}' for two slices; expected {{t}} or {{n}} in it (and {{axis}} if there "
+                              "are several axes), and each slice once",
                               output));
     }
     outputs.push_back(output);

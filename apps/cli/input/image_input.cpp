@@ -66,6 +66,9 @@ std::vector<std::filesystem::path> paths_of(const std::vector<std::string>& file
   return {files.begin(), files.end()};
 }
 
+/// The end of messages about a mesh that is given as an image; also the library's, if the file is VTKHDF.
+constexpr std::string_view kSavedContour = ", such as a saved contour; expected an image";
+
 /// Adds hints to errors: about --var if a variable is missing, and about conflicting options if files are not in
 /// monotone order.
 template <class Read>
@@ -77,10 +80,7 @@ auto with_hint(const std::string& variable, const std::vector<std::string>& file
     if (const std::string hint = series_hint(error, options, kWords); !hint.empty())
       throw Error(error.code(), error.what() + hint);
     if (error.code() == ErrorCode::UnsupportedFormat && find_mesh_file_format(files.front()) != nullptr)
-      throw Error(error.code(),
-                  fmt::format("{}: holds a mesh, such as a saved contour; expected an image: 'tegl check' "
-                              "and 'tegl slice' take meshes",
-                              files.front()));
+      throw Error(error.code(), with_option_names(fmt::format("{}: holds a mesh{}", files.front(), kSavedContour)));
     if (error.code() != ErrorCode::VariableNotFound || !variable.empty())
       throw Error(error.code(), with_option_names(error.what()));
     throw Error(error.code(),
@@ -96,6 +96,7 @@ std::string with_option_names(std::string message) {
     message += "; commands with --iso, and info, also take meshes (.vtu, .vts, .pvd) and tables of points (.csv)";
   if (message.find("holds a mesh ('UnstructuredGrid')") != std::string::npos)
     message += "; commands with --iso, and info, take meshes";
+  if (message.ends_with(kSavedContour)) message += ": 'tegl check' and 'tegl slice' take meshes";
   return message;
 }
 

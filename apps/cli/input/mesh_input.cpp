@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/numbers.hpp"
+#include "io/base/simplex_names.hpp"
 
 namespace tegl::cli {
 
@@ -153,9 +154,7 @@ void require_mesh_contour(const CellMesh& mesh, double isovalue, bool allow_empt
         ErrorCode::InvalidArgument,
         fmt::format("--ambiguity with a mesh of {}, none of which can be ambiguous; expected other cells, or the "
                     "mesh without this option",
-                    mesh.dim == 2   ? "triangles"
-                    : mesh.dim == 3 ? "tetrahedra"
-                                    : "4-simplices"));
+                    io_detail::simplex_name(mesh.dim).plural));
   if (allow_empty) return;
   if (mesh.types.empty())
     throw EmptyResult(

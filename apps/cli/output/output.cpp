@@ -13,6 +13,7 @@
 
 #include "base/interrupt.hpp"
 #include "base/numbers.hpp"
+#include "io/base/simplex_names.hpp"
 #include "tegl/error.hpp"
 
 namespace tegl::cli {
@@ -101,15 +102,10 @@ void require_output_holds(const fs::path& output, int simplex_dim) {
   const MeshFileFormat* const format = find_mesh_file_format(output);
   const std::string extension = output.extension().string();
   if (format == nullptr || simplex_dim > format->most_dim)
-    fail(
-        output,
-        fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf, or a surface: cut the contour "
-                    "first ('tegl slice')",
-                    extension, simplex_dim + 1,
-                    simplex_dim == 3   ? "tetrahedra"
-                    : simplex_dim == 4 ? "4-simplices"
-                                       : "simplices",
-                    simplex_dim + 1));
+    fail(output,
+         fmt::format("'{}' cannot hold a {}D contour ({} in {}D space); expected .vtkhdf, or a surface: slice the "
+                     "contour first ('tegl slice')",
+                     extension, simplex_dim + 1, io_detail::simplex_name(simplex_dim).plural, simplex_dim + 1));
   if (simplex_dim < format->least_dim)
     fail(output, fmt::format("'{}' cannot hold a {}D contour, which is made of lines; expected .ply, .gltf, .glb, .obj "
                              "or .vtkhdf",

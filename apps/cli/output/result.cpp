@@ -13,6 +13,7 @@
 
 #include "base/numbers.hpp"
 #include "base/printable.hpp"
+#include "io/base/simplex_names.hpp"
 
 namespace tegl::cli {
 
@@ -89,11 +90,11 @@ std::string merge_text(const MergeSummary& summary) {
       "merged", fmt::format("{} of {}; {} without size dropped", grouped(counts.merged_vertices),
                             counted(counts.before.vertices, "vertex", "vertices"), counted_simplices(dim, dropped)));
   if (counts.pinched_vertices > 0)
-    text += report_line("pinched", dim == 1 ? counted(counts.pinched_vertices, "vertex", "vertices")
-                                            : fmt::format("{}, {} in more than two {}",
-                                                          counted(counts.pinched_vertices, "vertex", "vertices"),
-                                                          counted_simplices(dim - 1, counts.pinched_faces),
-                                                          dim == 2 ? "triangles" : "tetrahedra"));
+    text += report_line(
+        "pinched",
+        dim == 1 ? counted(counts.pinched_vertices, "vertex", "vertices")
+                 : fmt::format("{}, {} in more than two {}", counted(counts.pinched_vertices, "vertex", "vertices"),
+                               counted_simplices(dim - 1, counts.pinched_faces), io_detail::simplex_name(dim).plural));
   if (counts.vanished_components > 0)
     text += report_line("vanished",
                         counted(counts.vanished_components, "component without size", "components without size"));
@@ -188,12 +189,7 @@ bool has_faults(const MeshReport& report) {
 }
 
 std::string counted_simplices(int dim, std::uint64_t count) {
-  constexpr std::array<std::pair<const char*, const char*>, 5> kNames = {{{"point", "points"},
-                                                                          {"segment", "segments"},
-                                                                          {"triangle", "triangles"},
-                                                                          {"tetrahedron", "tetrahedra"},
-                                                                          {"4-simplex", "4-simplices"}}};
-  const auto& [singular, plural] = kNames.at(static_cast<std::size_t>(dim));
+  const auto [singular, plural] = io_detail::simplex_name(dim);
   return counted(count, singular, plural);
 }
 

@@ -36,7 +36,7 @@ constexpr const char* kViewExamples =
     "  tegl contour heart.nii.gz --iso 400 --normals -o heart.vtkhdf\n"
     "  tegl view heart.vtkhdf --title 'A beating heart' -o heart.html\n"
     "  tegl view skull.ply skin.ply -o head.html\n"
-    "The page is one file without links to others: open it in any browser, or send it by mail. 4D contours are cut\n"
+    "The page is one file without links to others: open it in any browser, or send it by mail. 4D contours are sliced\n"
     "at the time of a slider; the births, merges, splits and deaths on its timeline can be clicked. 3D contours\n"
     "can be rotated. In the page, '?' lists the keys.";
 

@@ -46,6 +46,7 @@ struct TrackEvent {
   std::vector<Index> in = {};     ///< segments that end here, ascending
   std::vector<Index> out = {};    ///< segments that start here, ascending
   std::int64_t euler_change = 0;  ///< change of the Euler characteristic of the cut through these parts
+  Index left_out = 0;             ///< number of tracks of the event that `select_tracks` has left out
 };
 
 /// A change of one part's topology without a change of the number of parts: a handle opens or closes (by -2 or 2, in

@@ -4,6 +4,7 @@
 #include "images/layers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -140,17 +141,35 @@ std::vector<Axis> raw_axes(const RawLayout& layout, const fs::path& path) {
   return axes;
 }
 
-/// Adds a remark if the file has bytes after the last sample: the sizes, the type or the offset may be wrong.
-void remark_on_rest(const StoredSamples& samples, ImageInfo& info) {
-  const std::uint64_t bytes = size_of_file(samples.path);
-  const std::uint64_t end = samples.offset + checked_bytes(samples.sizes, bytes_of_type(samples.type), samples.path);
-  if (bytes == end) return;
-  info.remarks.push_back(fmt::format("{}: {} of {} bytes follow the last of {} samples of type {}, and are ignored",
-                                     samples.path.string(), bytes - end, bytes, shape_text(samples.sizes),
-                                     samples.type));
-}
-
 }  // namespace
+
+std::vector<std::string> io_detail::remarks_on_rest(std::span<const fs::path> files, const RawLayout& layout) {
+  const std::vector<std::uint64_t> sizes(layout.sizes.begin(), layout.sizes.end());
+  const std::string_view type = name_of(layout.type.value());
+  // the files with a rest, and the shortest and the longest of these
+  std::vector<std::string> names;
+  std::uint64_t least = 0, most = 0, bytes = 0;
+  for (const fs::path& path : files) {
+    const std::uint64_t size = size_of_file(path);
+    const std::uint64_t end = layout.offset + checked_bytes(sizes, bytes_of_type(type), path);
+    if (size <= end) continue;  // shorter files are an error of the reader
+    bytes = size;
+    least = names.empty() ? size - end : std::min(least, size - end);
+    most = std::max(most, size - end);
+    names.push_back(path.string());
+  }
+  if (names.empty()) return {};
+  // the remark
+  constexpr std::size_t kMostNames = 3;
+  const std::string where = names.size() <= kMostNames
+                                ? fmt::format("{}", fmt::join(names, ", "))
+                                : fmt::format("{} of {} files, the first {}", names.size(), files.size(), names[0]);
+  const std::string rest = names.size() == 1 ? fmt::format("{} of {} bytes", least, bytes)
+                           : least == most   ? fmt::format("{} bytes of each", least)
+                                             : fmt::format("{} to {} bytes of each", least, most);
+  return {fmt::format("{}: {} follow the last of {} samples of type {}, and are ignored", where, rest,
+                      shape_text(sizes), type)};
+}
 
 OpenLayersResult io_detail::to_open_layers(RawLayers&& source, const fs::path& path) {
   ImageInfo info = source.info;
@@ -217,7 +236,7 @@ RawLayers io_detail::open_raw(const fs::path& path, const RawLayout& layout) {
   samples.sizes.assign(layout.sizes.begin(), layout.sizes.end());
   samples.swapped = layout.big_endian != (std::endian::native == std::endian::big);
   const auto reader = std::make_shared<SampleReader>(std::move(samples));
-  remark_on_rest(reader->samples(), source.info);
+  source.info.remarks = remarks_on_rest(std::array{path}, layout);
   source.read = [reader, per_layer](std::size_t first, std::size_t count) {
     return reader->read(first * per_layer, count * per_layer, {});
   };

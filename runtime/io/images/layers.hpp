@@ -5,6 +5,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "base/raw_layers.hpp"
 #include "process/separate_reading.hpp"
@@ -22,5 +25,9 @@ LayersOfFiles open_reporting(const std::filesystem::path& path, const Progress& 
 
 /// Opens a headerless raw file.
 RawLayers open_raw(const std::filesystem::path& path, const RawLayout& layout);
+
+/// One remark on the raw files of `files` that have bytes after the last sample, if there are any: the sizes, the type
+/// or the offset may be wrong. It names up to three files.
+std::vector<std::string> remarks_on_rest(std::span<const std::filesystem::path> files, const RawLayout& layout);
 
 }  // namespace tegl::io_detail

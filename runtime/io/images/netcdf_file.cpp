@@ -191,9 +191,7 @@ void NcFile::collect(int group, const std::string& prefix, int depth, std::vecto
     const auto [status, name] = name_from([&](char* to) { return nc_inq_grpname(child, to); });
     check(status, "reading a group's name");
     if (depth == 0 && name == "VTKHDF")
-      fail(ErrorCode::UnsupportedData, path_,
-           "holds a mesh (VTKHDF), such as a saved contour; expected an image: 'tegl check' and 'tegl slice' take "
-           "meshes");
+      fail(ErrorCode::UnsupportedData, path_, "holds a mesh (VTKHDF), such as a saved contour; expected an image");
     collect(child, (prefix.empty() ? "/" : prefix) + name + "/", depth + 1, out);
   }
 }

@@ -79,7 +79,12 @@ MemberReader reader_of(const SeriesOptions& options) {
 
 LayersOfFiles open_several(std::span<const fs::path> files, SeriesOptions options) {
   options.keep_stored = false;
-  if (options.raw || !are_dicom_files(files)) return open_members(files, options, reader_of(options));
+  if (options.raw) {
+    LayersOfFiles opened = open_members(files, options, reader_of(options));
+    opened.layers.info.remarks = remarks_on_rest(opened.files, *options.raw);
+    return opened;
+  }
+  if (!are_dicom_files(files)) return open_members(files, options, reader_of(options));
   return {open_dicom_files(files, false, options), {files.begin(), files.end()}};
 }
 

@@ -12,6 +12,7 @@
 #include "base/common.hpp"
 #include "base/mesh_data.hpp"
 #include "base/pending_path.hpp"
+#include "base/simplex_names.hpp"
 #include "meshes/attributes.hpp"
 #include "meshes/gltf_reader.hpp"
 #include "meshes/gltf_writer.hpp"
@@ -79,12 +80,6 @@ void check_wrapped(const MeshView& mesh, const MeshFileFormat& format, const fs:
          mesh.periods.size(), 2 * mesh.space_dim + 1);
 }
 
-/// "tetrahedra" for 3 dimensions.
-std::string name_of_simplices(int dim) {
-  constexpr std::array kNames = {"points", "segments", "triangles", "tetrahedra", "4-simplices"};
-  return kNames.at(static_cast<std::size_t>(dim));
-}
-
 /// Every format supports triangles, and all except STL support lines. Tetrahedra, 4-simplices and more than three
 /// coordinates are only supported by formats with most_dim = 4.
 void check_combination(const MeshView& mesh, const MeshFileFormat& format, const fs::path& path) {
@@ -95,7 +90,7 @@ void check_combination(const MeshView& mesh, const MeshFileFormat& format, const
   if (mesh.dim > format.most_dim || (mesh.space_dim > 3 && format.most_dim < 3))
     fail(ErrorCode::UnsupportedFormat, path,
          "'{}' cannot hold {} in {}D space (the contour of a {}D image); expected .vtkhdf, or a slice of it",
-         path.extension().string(), name_of_simplices(mesh.dim), mesh.space_dim, mesh.space_dim);
+         path.extension().string(), simplex_name(mesh.dim).plural, mesh.space_dim, mesh.space_dim);
 }
 
 /// The format for a file's extension. Throws unless it supports the mesh and the options.

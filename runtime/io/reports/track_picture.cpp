@@ -35,7 +35,6 @@ constexpr const char* kStyle =
     ".open { fill: #fff; stroke: #333; stroke-width: 1.3 }\n"
     "@media (prefers-color-scheme: dark) {\n"
     "text { fill: #bbb } .title { fill: #ddd } .link { stroke: #999 }\n"
-    ".mark { stroke: #333; fill: none }\n"
     ".mark { stroke: #ddd } .full { fill: #ddd; stroke: #ddd } .open { fill: #111; stroke: #ddd }\n"
     "}\n"
     "</style>\n";
@@ -332,21 +331,7 @@ class Drawing {
     return rows;
   }
 
-  /// Whether a merge, split or exchange has only one track here: the others are left out.
-  [[nodiscard]] static bool is_partial(const TrackEvent& event) {
-    switch (event.kind) {
-      case TrackEventKind::merge:
-        return event.in.size() < 2;
-      case TrackEventKind::split:
-        return event.out.size() < 2;
-      case TrackEventKind::exchange:
-        return event.in.size() < 2 && event.out.size() < 2;
-      default:
-        return false;
-    }
-  }
-
-  /// A dotted line below a mark, for tracks that are not drawn.
+  /// A dotted line below a mark, or below the link of an event, for tracks that are not drawn.
   [[nodiscard]] std::string stub(double x, double y) const {
     return fmt::format("<path class=\"link away\" d=\"M{:.2f} {:.2f}v{:.2f}\"/>", x, y,
                        std::min(0.8 * row_height_, 14.0));
@@ -354,12 +339,16 @@ class Drawing {
 
   void draw_event(const TrackEvent& event) {
     const Index main = rows_.through(event);
-    const double row = main == kNone ? rows_of(event).front() : y(main);
+    const std::vector<double> rows = rows_of(event);
+    const double row = main == kNone ? rows.front() : y(main);
     std::string place;
     for (int a = 0; a + 1 < graph_.space_dim; ++a) place += fmt::format("{}{:.6g}", a == 0 ? "" : ", ", event.place[a]);
-    const bool partial = is_partial(event);
+    const std::string left_out = event.left_out == 0 ? ""
+                                 : event.left_out == 1
+                                     ? ", with a track that is not drawn"
+                                     : fmt::format(", with {} tracks that are not drawn", event.left_out);
     text_ += fmt::format("<g><title>{} at {:.6g}, place {}{}</title>{}{}</g>\n", name_of(event.kind), event.time, place,
-                         partial ? ", with a track that is not drawn" : "", partial ? stub(x(event.time), row) : "",
+                         left_out, event.left_out == 0 ? "" : stub(x(event.time), rows.back()),
                          mark(event.kind, x(event.time), row));
   }
 
@@ -378,7 +367,7 @@ class Drawing {
         entry(mark(kind, at, row), name_of(kind));
     }
     if (!graph_.handles.empty()) entry(handle_mark(at, row), "handle opens or closes");
-    if (std::any_of(graph_.events.begin(), graph_.events.end(), is_partial))
+    if (std::any_of(graph_.events.begin(), graph_.events.end(), [](const auto& event) { return event.left_out > 0; }))
       entry(stub(at, row - 7), "to a track that is not drawn");
   }
 

@@ -17,7 +17,7 @@ namespace tegl::detail {
 template <int N>
 void require_cut_axis(int axis) {
   if (axis < 0 || axis >= N)
-    throw Error(ErrorCode::InvalidArgument, fmt::format("cut across axis {}; expected 0 to {}", axis, N - 1));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("slice across axis {}; expected 0 to {}", axis, N - 1));
 }
 
 /// Rounds the hyperplane's coordinate to the precision of the vertices, so that it equals the coordinate of a vertex
@@ -25,7 +25,7 @@ void require_cut_axis(int axis) {
 template <class Real>
 Real rounded_at(double at) {
   if (!std::isfinite(at))
-    throw Error(ErrorCode::InvalidArgument, fmt::format("cut at {}; expected a finite coordinate", at));
+    throw Error(ErrorCode::InvalidArgument, fmt::format("slice at {}; expected a finite coordinate", at));
   constexpr double kMost = std::numeric_limits<Real>::max();
   return static_cast<Real>(std::clamp(at, -kMost, kMost));
 }

@@ -111,7 +111,7 @@ class Cutter {
     }
     number_points();
     if (keys_.size() > std::numeric_limits<Index>::max())
-      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in a cut; expected at most {}", keys_.size(),
+      throw Error(ErrorCode::TooLarge, fmt::format("{} vertices in a slice; expected at most {}", keys_.size(),
                                                    std::numeric_limits<Index>::max()));
     Contour<N - 1, Real> result;
     for (int i = 0, a = 0; i < N - 1; ++i, ++a) {

@@ -271,7 +271,7 @@ void require_near(const HyperplaneFamily<N>& family, const CrossedPeriods<N>& cr
                   std::span<const std::string> names, double offset) {
   const double level = family.template level<double>(offset);
   if (crossed.any && !crossed.is_straight && !is_near_period(crossed, level))
-    fail_far(family, crossed, names, "a cut across a period", level);
+    fail_far(family, crossed, names, "a slice across a period", level);
 }
 
 template <int N>

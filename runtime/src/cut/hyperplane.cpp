@@ -32,7 +32,8 @@ requires DimensionBetween<N, 2, 5> HyperplaneFrame<N> frame_of(const Hyperplane<
                     "all 0",
                     fmt::join(hyperplane.normal, ", ")));
   if (!std::isfinite(hyperplane.offset))
-    throw Error(ErrorCode::InvalidArgument, fmt::format("cut at {}; expected a finite coordinate", hyperplane.offset));
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("slice at {}; expected a finite coordinate", hyperplane.offset));
   HyperplaneFrame<N> frame;
   for (int a = 0; a < N; ++a)
     if (std::abs(normal[a]) == most) frame.dropped = a;

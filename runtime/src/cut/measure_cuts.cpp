@@ -44,7 +44,7 @@ requires DimensionBetween<N, 3, 5> std::vector<CutMeasures> measure_cuts(const C
   detail::require_finite(contour);
   for (const double t : at)
     if (!std::isfinite(t))
-      throw Error(ErrorCode::InvalidArgument, fmt::format("a cut at {}; expected finite values", t));
+      throw Error(ErrorCode::InvalidArgument, fmt::format("a slice at {}; expected finite values", t));
   if (!contour.periods.empty()) return measure_wrapped_cuts(contour, at, work);
   return detail::measure_cuts_of_view(detail::SimplexView<N>(contour), contour.direction, at, work);
 }

@@ -114,13 +114,14 @@ class Mover {
     if (too_long < count)
       throw Error(
           ErrorCode::InvalidArgument,
-          fmt::format("cut of a wrapped contour across a period, with simplex {} over more than {} periods of the "
-                      "cuts; expected shorter ones, or an unrolled contour",
+          fmt::format("slice of a wrapped contour across a period, with simplex {} over more than {} periods of the "
+                      "slices; expected shorter ones, or an unrolled contour",
                       too_long.load(), kLongest));
     if (!are_short)
-      throw Error(ErrorCode::InvalidArgument,
-                  "cut of a wrapped contour along a sum of its periods, with simplices of half of it or more; expected "
-                  "shorter ones, or an unrolled contour");
+      throw Error(
+          ErrorCode::InvalidArgument,
+          "slice of a wrapped contour along a sum of its periods, with simplices of half of it or more; expected "
+          "shorter ones, or an unrolled contour");
     for (const std::vector<Found>& part : parts) found_.insert(found_.end(), part.begin(), part.end());
   }
 
@@ -199,7 +200,7 @@ class Mover {
     constexpr std::size_t kMost = std::numeric_limits<Index>::max();
     if (keys_.size() > kMost || found_.size() > kMost)
       throw Error(ErrorCode::TooLarge,
-                  fmt::format("{} simplices beside cuts across a period; expected at most {}", found_.size(), kMost));
+                  fmt::format("{} simplices beside slices across a period; expected at most {}", found_.size(), kMost));
   }
 
   [[nodiscard]] Contour<N, Real> moved() const {

@@ -194,7 +194,7 @@ detail::CrossedPeriods<N> periods_to_cut(const HyperplaneFamily<N>& family, std:
   detail::CrossedPeriods<N> crossed = detail::crossed_periods<N>(family, periods);
   if (!crossed.has_cuts)
     throw Error(ErrorCode::InvalidArgument,
-                "cut of a wrapped contour across one of its periods, along which it does not repeat itself within 32 "
+                "slice of a wrapped contour across one of its periods, along which it does not repeat itself within 32 "
                 "periods; expected another hyperplane, or an unrolled contour");
   return crossed;
 }
@@ -263,7 +263,7 @@ std::vector<StackedCut> group_by_normal(const Contour<N, Real>& contour, std::sp
   return stack;
 }
 
-constexpr const char* kCancelledSlice = "cuts cancelled";
+constexpr const char* kCancelledSlice = "slices cancelled";
 
 }  // namespace
 

@@ -26,7 +26,7 @@ template <int N, class Real>
 LayerRange layers_around(const Grid<N>& grid, int axis, double at) {
   if (!grid.is_separate(axis))
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("direct cut of a grid whose world map mixes axis {} with others; expected a row {} and a "
+                fmt::format("direct slice of a grid whose world map mixes axis {} with others; expected a row {} and a "
                             "column {} of zeros, except on the diagonal",
                             axis, axis, axis));
   const Real rounded = rounded_at<Real>(at);
@@ -42,7 +42,7 @@ LayerRange layers_around(const Grid<N>& grid, int axis, double at) {
   if (layers.first == size) {
     const auto& cut = grid.axes[axis];
     throw Error(ErrorCode::InvalidArgument,
-                fmt::format("cut at {}; expected a coordinate between {} and {}, the ends of axis {}{}", at,
+                fmt::format("slice at {}; expected a coordinate between {} and {}, the ends of axis {}{}", at,
                             world_coordinate<N, Real>(grid, axis, 0), world_coordinate<N, Real>(grid, axis, size - 1),
                             axis, cut.name.empty() ? "" : " (" + cut.name + ")"));
   }

@@ -254,6 +254,16 @@ void renumber_all(std::vector<Index>& list, const std::vector<Index>& numbers) {
   std::erase(list, kNone);
 }
 
+/// The number of tracks of an event that are not kept.
+Index count_left_out(const TrackGraph& graph, const TrackEvent& event, const std::vector<bool>& keep) {
+  std::vector<Index> tracks;
+  for (const auto* list : {&event.in, &event.out})
+    for (const Index s : *list)
+      if (const Index track = graph.segments[s].track; !keep[track]) tracks.push_back(track);
+  std::sort(tracks.begin(), tracks.end());
+  return static_cast<Index>(std::unique(tracks.begin(), tracks.end()) - tracks.begin());
+}
+
 template <class T>
 void keep_only(std::vector<T>& list, const std::vector<Index>& numbers) {
   for (std::size_t i = 0; i < list.size(); ++i)
@@ -330,6 +340,7 @@ TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep)
     segment.track = tracks[segment.track];
   }
   for (TrackEvent& event : result.events) {
+    event.left_out += count_left_out(graph, event, keep);
     renumber_all(event.in, segments);
     renumber_all(event.out, segments);
   }

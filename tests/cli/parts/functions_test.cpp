@@ -12,6 +12,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/exit_codes.hpp"
@@ -184,6 +185,22 @@ TEST(Isovalues, HaveAnOutputEach) {
   EXPECT_THAT(isovalue_outputs("a.ply", std::vector<SpelledNumber>{{20, "20"}}), ElementsAre("a.ply"));
 }
 
+TEST(Output, SimplicesAreNamedByTheirDimension) {
+  const std::vector<std::pair<std::string, std::string>> names = {{"1 point", "2 points"},
+                                                                  {"1 segment", "2 segments"},
+                                                                  {"1 triangle", "2 triangles"},
+                                                                  {"1 tetrahedron", "2 tetrahedra"},
+                                                                  {"1 4-simplex", "2 4-simplices"}};
+  for (int dim = 0; dim < 5; ++dim) {
+    EXPECT_EQ(counted_simplices(dim, 1), names[static_cast<std::size_t>(dim)].first);
+    EXPECT_EQ(counted_simplices(dim, 2), names[static_cast<std::size_t>(dim)].second);
+  }
+  EXPECT_THAT(error_of([] { require_output_holds("a.ply", 3); }).what(),
+              HasSubstr("4D contour (tetrahedra in 4D space)"));
+  EXPECT_THAT(error_of([] { require_output_holds("a.ply", 4); }).what(),
+              HasSubstr("5D contour (4-simplices in 5D space)"));
+}
+
 TEST(Output, FormatsHoldTheDimensionsThatTheyHold) {
   for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.obj", "a.vtkhdf", "A.PLY"}) {
     EXPECT_NO_THROW(require_output_holds(name, 1)) << name;
@@ -194,7 +211,7 @@ TEST(Output, FormatsHoldTheDimensionsThatTheyHold) {
   for (const char* name : {"a.ply", "a.gltf", "a.glb", "a.stl", "a.obj"}) {
     const Error error = error_of([&] { require_output_holds(name, 3); });
     EXPECT_EQ(error.code(), ErrorCode::WriteFailed);
-    EXPECT_THAT(error.what(), HasSubstr("expected .vtkhdf, or a surface: cut the contour first ('tegl slice')"));
+    EXPECT_THAT(error.what(), HasSubstr("expected .vtkhdf, or a surface: slice the contour first ('tegl slice')"));
   }
   const Error lines = error_of([] { require_output_holds("a.stl", 1); });
   EXPECT_EQ(lines.code(), ErrorCode::WriteFailed);

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <regex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io_support.hpp"
@@ -121,6 +122,15 @@ TEST(TrackFiles, ThePictureShowsTheLongestTracks) {
   EXPECT_THAT(track_svg(fork(), {.most_tracks = 1}), HasSubstr(", with a track that is not drawn</title>"));
 }
 
+/// Three lines that merge at t = 30 and split again at t = 100. The longest-lived track is the one through both; then
+/// come the two others before the merge.
+TrackGraph knots() {
+  Contour<2, double> contour;
+  contour.vertices = {{-1, 0}, {0, 10}, {1, 20}, {0, 30}, {0, 100}, {-1, 103}, {0, 102}, {1, 101}};
+  contour.simplices = {{0, 3}, {1, 3}, {2, 3}, {3, 4}, {4, 5}, {4, 6}, {4, 7}};
+  return track(contour);
+}
+
 TrackGraph graph_of_the_ocean() {
   TrackOptions options;
   options.min_lifetime = 0.5;
@@ -135,6 +145,25 @@ std::vector<std::vector<std::string>> all_of(const std::string& text, const char
   for (std::sregex_iterator found(text.begin(), text.end(), regex); found != std::sregex_iterator(); ++found)
     result.emplace_back(found->begin(), found->end());
   return result;
+}
+
+TEST(TrackFiles, ThePictureShowsWhereTracksAreLeftOut) {
+  const TrackGraph graph = knots();
+  ASSERT_EQ(graph.tracks.size(), 5u);
+  const std::string one = ", with a track that is not drawn", two = ", with 2 tracks that are not drawn";
+  // by the number of tracks that are drawn: the ends of the titles of the merge and of the split
+  const std::vector<std::pair<std::string, std::string>> expected = {{two, two}, {one, two}, {"", two}, {"", one}, {}};
+  for (std::size_t most = 1; most <= 5; ++most) {
+    const std::string svg = track_svg(graph, {.most_tracks = most});
+    const auto titles = all_of(svg, "<title>(merge|split) at (?:30|100), place 0([^<]*)</title>");
+    ASSERT_EQ(titles.size(), 2u) << most;
+    const auto& [merge, split] = expected[most - 1];
+    EXPECT_EQ(titles[0][2], merge) << most;
+    EXPECT_EQ(titles[1][2], split) << most;
+    const std::size_t events = (merge.empty() ? 0u : 1u) + (split.empty() ? 0u : 1u);
+    EXPECT_EQ(all_of(svg, "class=\"link away\"").size(), events + (events > 0 ? 1u : 0u))
+        << most << ", with the legend";
+  }
 }
 
 TEST(TrackFiles, LinksInThePictureCrossNoNumber) {

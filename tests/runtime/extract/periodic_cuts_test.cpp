@@ -371,12 +371,13 @@ TEST(PeriodicCuts, PlacesFarFromAPeriodAreErrorsUnlessTheyAreModuloIt) {
   const auto contour = wrapped<double>(image, all_periodic<3>(), 0.4);
   expect_error(
       ErrorCode::InvalidArgument,
-      "a cut across a period has the coordinate 1000000000000 along axis 2, with the period 1 from 0; expected "
+      "a slice across a period has the coordinate 1000000000000 along axis 2, with the period 1 from 0; expected "
       "at most 536870912 periods",
       [&] { (void)slice(contour, Hyperplane<3>::across(2, 1e12)); });
-  expect_error(ErrorCode::InvalidArgument, "a cut across a period has the coordinate -1000000000000 along axis 2", [&] {
-    (void)slice_stack(contour, {Hyperplane<3>::across(2, 0.5), Hyperplane<3>::across(2, -1e12)});
-  });
+  expect_error(ErrorCode::InvalidArgument, "a slice across a period has the coordinate -1000000000000 along axis 2",
+               [&] {
+                 (void)slice_stack(contour, {Hyperplane<3>::across(2, 0.5), Hyperplane<3>::across(2, -1e12)});
+               });
   expect_error(ErrorCode::InvalidArgument, "the coordinate 1e+300 along the normal, with the period 0.3", [&] {
     (void)slice(contour, {{3.0, 3.0, 0.0}, 1e300});
   });
@@ -391,7 +392,7 @@ TEST(PeriodicCuts, PlacesFarFromAPeriodAreErrorsUnlessTheyAreModuloIt) {
   for (auto& period : wrong.periods) period.dual = {1e-9, 1e-9, 1e-9};
   wrong.vertices[contour.simplices[0][1]][2] += 1e6;
   expect_error(ErrorCode::InvalidArgument,
-               "with simplex 0 over more than 128 periods of the cuts; expected shorter ones", [&] {
+               "with simplex 0 over more than 128 periods of the slices; expected shorter ones", [&] {
                  (void)slice(wrong, {{0.0, 1.0, 1.0}, 0.5});
                });
 }

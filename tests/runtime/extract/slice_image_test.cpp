@@ -355,7 +355,7 @@ TEST(SliceImage, NamesThePlaceAndTheRangeThatItIsOutsideOf) {
                       "between 2 and 3, the ends of axis 3 (time)"),
               ErrorCode::InvalidArgument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, Hyperplane<4>::across(3, nan)); }, "cut at nan"),
+  EXPECT_EQ(code_of([&] { slice_image(owned.view(), 0.5, Hyperplane<4>::across(3, nan)); }, "slice at nan"),
             ErrorCode::InvalidArgument);
   EXPECT_EQ(code_of([&] { slice_image(owned.view(), nan, Hyperplane<4>::across(3, 2.5)); }, "nan"),
             ErrorCode::InvalidIsovalue);

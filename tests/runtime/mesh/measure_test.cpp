@@ -297,7 +297,7 @@ TEST(MeasureCuts, ComeInTheOrderAskedForWhateverItIs) {
 TEST(Measure, WrongArgumentsAreNamedAndItCanBeCancelled) {
   auto contour = contour_of<3>(Ball<3>{{}, 0.6}, 8, 1.0);
   const std::vector<double> bad = {std::numeric_limits<double>::quiet_NaN()};
-  expect_error(ErrorCode::InvalidArgument, "a cut at nan", [&] { measure_cuts(contour, bad); });
+  expect_error(ErrorCode::InvalidArgument, "a slice at nan", [&] { measure_cuts(contour, bad); });
   const Progress stop = [](double) { return false; };
   const std::vector<double> at = {0.0};
   expect_error(ErrorCode::Cancelled, "cancelled", [&] { tegl::measure(contour, {1, stop}); });

@@ -513,6 +513,12 @@ TEST(Track, SelectsTracks) {
   EXPECT_THAT(part.events[1].in, ElementsAre(0));
   EXPECT_THAT(part.events[1].out, ElementsAre(1));
   EXPECT_EQ(part.segments[2].from, 2u);
+  std::vector<Index> left_out;
+  for (const TrackEvent& event : part.events) left_out.push_back(event.left_out);
+  EXPECT_THAT(left_out, ElementsAre(0, 1, 1, 0));
+  for (const TrackEvent& event : select_tracks(graph, std::vector<bool>(keep.size(), true)).events)
+    EXPECT_EQ(event.left_out, 0u);
+  EXPECT_EQ(select_tracks(part, {true}).events[1].left_out, 1u) << "of the whole graph";
   EXPECT_THROW(select_tracks(graph, {true}), Error);
 }
 
