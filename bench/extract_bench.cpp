@@ -242,7 +242,7 @@ void restrict_to(std::string_view name) {
     names.emplace_back(hwy::TargetName(target));
   }
   throw Error(ErrorCode::InvalidArgument,
-              fmt::format("--simd: '{}'; expected one of {}", name, fmt::join(names, ", ")));
+              fmt::format("--simd is '{}'; expected one of {}", name, fmt::join(names, ", ")));
 }
 
 }  // namespace

@@ -151,9 +151,10 @@ def main() -> None:
         for threads in options.threads:
             if threads == 4 and case.benchmarks.startswith("barycentric"):
                 continue  # extract_bench has these on one thread
-            result["rows"].append(measure(case, threads, options))
-            print(f"{result['rows'][-1]['name']}, {threads}: " + ", ".join(f"{rule} {side['median_ms']:.2f} ms ({side['ratio']:.2f}×)"
-                                                          for rule, side in result["rows"][-1]["sides"].items()), flush=True)
+            row = measure(case, threads, options)
+            result["rows"].append(row)
+            print(f"{row['name']}, {threads}: " + ", ".join(f"{rule} {side['median_ms']:.2f} ms ({side['ratio']:.2f}×)"
+                                                          for rule, side in row["sides"].items()), flush=True)
     if not options.only:
         result["start"] = measure_start(options)
     print("\n".join(["", *machine.lines(result["machine"]), "", *tables.resolved(result)]))

@@ -119,7 +119,7 @@ class Contour(ArrayOrdered):
 
     @property
     def time_axis(self) -> int:
-        """The axis across which contours are sliced by default, and along which parts are tracked: 0 or N - 1."""
+        """The axis across which contours are sliced by default, and along which components are tracked: 0 or N - 1."""
         return 0 if self._is_reversed else self.ndim - 1
 
     @property

@@ -480,6 +480,7 @@ TEST_F(Errors, MessagesAboutOptionsHaveOneForm) {
   expect_failure(2, {"demo", "film"}, {"unexpected argument 'film'; expected none"});
   expect_failure(2, {"demo", "film", "2"}, {"unexpected arguments 'film', '2'; expected none"});
   expect_failure(2, {"demo", "--", "film", "2"}, {"unexpected arguments 'film', '2'; expected none"});
+  expect_failure(2, {"demo", "film", "--", "2"}, {"unexpected arguments 'film', '2'; expected none"});
   expect_failure(2, {}, {"no command; expected info, contour, slice"});
   expect_failure(2, {"simplify", ball_file(), "--iso", "0", "--ratio", "10%", "-o", path("a.ply")},
                  {"--ratio is '10%'; expected a number from 0 to 1"});

@@ -128,6 +128,10 @@ TEST_F(Raw, RemarksOnBytesOfAllFilesOfASeries) {
   EXPECT_EQ(remark({1, 2, 3}), files[1] + ", " + files[2] + ", " + files[3] + ": 4 to 8 bytes of each" + samples);
   EXPECT_EQ(remark({0, 1, 2, 3, 4}), "4 of 5 files, the first " + files[1] + ": 4 to 8 bytes of each" + samples);
   EXPECT_EQ(run_tegl({"info", "--raw", "3x2", "--raw-type", "float", "--raw-offset", "4", files[2], files[3]}).err, "");
+  EXPECT_THAT(run_tegl({"contour", "--stream", "--raw", "3x2", "--raw-type", "float", files[0], files[2], files[3],
+                        "--iso", "0", "-o", path("series.ply")})
+                  .err,
+              HasSubstr(files[2] + ", " + files[3] + ": 4 bytes of each" + samples));
 }
 
 TEST_F(Raw, NamesWhatDoesNotFitItsSizes) {

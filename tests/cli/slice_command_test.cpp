@@ -497,8 +497,7 @@ TEST_F(Slice, ErrorsOfCutsFarFromAPeriodNameTheCutAndItsOwnNumbers) {
                     oblique = saved("oblique", "(1,0,0) (0,1,0) (0.5,0,1)");
   refused({cube, "--plane", "0,3,3=1,1e12"},
           "the slice at 3 y + 3 z = 1e12: a slice across a period has the coordinate 1000000000000 along the normal, "
-          "with the "
-          "period 36 from 0; expected at most 536870912 periods from there");
+          "with the period 36 from 0; expected at most 536870912 periods from there");
   refused({oblique, "--at", "z=1e12", "--scale", "z=10"},
           "the slice at z = 1e12, on axes scaled by --scale: a slice across a period has the coordinate 10000000000000 "
           "along the axis z, with the period 120 from 0");

@@ -75,8 +75,8 @@ TEST_F(Track, WritesGraphsPicturesTablesAndTheContour) {
   EXPECT_THAT(text("g.dot"), HasSubstr("label = \"merge"));
   EXPECT_THAT(text("g.svg"), HasSubstr("balls.nrrd"));
   EXPECT_THAT(text("g.svg"), HasSubstr("</svg>\n"));
-  EXPECT_THAT(text("g-events.csv"), HasSubstr("event,kind,time,x,y,z,vertex,at_border,in,out,euler_change\n"));
-  EXPECT_THAT(text("g-events.csv"), HasSubstr(",0 1,2,-2\n"));
+  EXPECT_THAT(text("g-events.csv"), HasSubstr("event,kind,time,x,y,z,vertex,at_border,in,out,euler_change,left_out\n"));
+  EXPECT_THAT(text("g-events.csv"), HasSubstr(",0 1,2,-2,0\n"));
   const std::string segments = text("g-segments.csv");
   EXPECT_EQ(std::count(segments.begin(), segments.end(), '\n'), 4);
   const std::string samples = text("g-samples.csv");

@@ -85,11 +85,14 @@ std::string of_missing(const CLI::App& command, const std::string& what) {
   return fmt::format("{} is missing; expected {}", named->first, usage_of(command, named->first));
 }
 
-/// Arguments after the expected ones, as given: CLI11's message has them in reverse order. The error's name is that of
-/// the command, or of the program, which gets the arguments after a `--`.
-std::string of_surplus(const CLI::App& command, const CLI::ParseError& error) {
-  const bool is_of_parent = command.get_name() != error.get_name() && command.get_parent() != nullptr;
-  std::vector<std::string> surplus = (is_of_parent ? *command.get_parent() : command).remaining();
+/// Arguments after the expected ones, as given: CLI11's message has them in reverse order. The program gets those after
+/// a `--`.
+std::string of_surplus(const CLI::App& command) {
+  std::vector<std::string> surplus = command.remaining();
+  if (command.get_parent() != nullptr) {
+    const std::vector<std::string> rest = command.get_parent()->remaining();
+    surplus.insert(surplus.end(), rest.begin(), rest.end());
+  }
   std::erase(surplus, "--");
   return fmt::format("unexpected argument{} '{}'; expected none", surplus.size() == 1 ? "" : "s",
                      fmt::join(surplus, "', '"));
@@ -109,7 +112,7 @@ std::string parse_error_text(const CLI::App& command, const CLI::ParseError& err
   if (kind == "RequiresError")
     if (const auto pair = parts_of(what, " requires "))
       return fmt::format("{} without {}; expected both", pair->first, pair->second);
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) return of_surplus(command, error);
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) return of_surplus(command);
   return what;
 }
 

@@ -220,8 +220,7 @@ class CheckCommand final : public Command {
     Wording wording;
     wording.no_size =
         "if tegl made the contour: samples equal the isovalue, which 'tegl contour --epsilon' avoids, or a slice "
-        "passes "
-        "through vertices of its contour";
+        "passes through vertices of its contour";
     return wording;
   }
 

@@ -227,8 +227,7 @@ Contour<N, Real> unrolled_for(Contour<N, Real> contour, const std::string& outpu
 /// The remark on slices across periods for which a wrapped contour is unrolled.
 inline constexpr const char* kUnrolledForCuts =
     "the contour is unrolled for slices along which it does not repeat itself within 32 periods: it ends at both ends "
-    "of "
-    "its periodic axes";
+    "of its periodic axes";
 
 /// Extracts the contour of an image whose cells are divided and passes it to `use`, as extract_and_use.
 template <class Result, class T, int N, class Use>

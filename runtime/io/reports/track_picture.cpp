@@ -368,7 +368,7 @@ class Drawing {
     }
     if (!graph_.handles.empty()) entry(handle_mark(at, row), "handle opens or closes");
     if (std::any_of(graph_.events.begin(), graph_.events.end(), [](const auto& event) { return event.left_out > 0; }))
-      entry(stub(at, row - 7), "to a track that is not drawn");
+      entry(stub(at, row - 7), "to tracks that are not drawn");
   }
 
   const TrackPicture& picture_;

@@ -45,7 +45,8 @@ Json event_json(const TrackGraph& graph, std::size_t number) {
           {"at_border", event.at_border},
           {"in", event.in},
           {"out", event.out},
-          {"euler_change", event.euler_change}};
+          {"euler_change", event.euler_change},
+          {"left_out", event.left_out}};
 }
 
 Json sample_json(const TrackGraph& graph, const TrackSample& sample) {
@@ -151,12 +152,13 @@ std::string track_dot(const TrackGraph& graph) {
 }
 
 std::string track_events_csv(const TrackGraph& graph) {
-  std::string text = fmt::format("event,kind,time{},vertex,at_border,in,out,euler_change\n", axis_columns(graph, ""));
+  std::string text =
+      fmt::format("event,kind,time{},vertex,at_border,in,out,euler_change,left_out\n", axis_columns(graph, ""));
   for (std::size_t e = 0; e < graph.events.size(); ++e) {
     const TrackEvent& event = graph.events[e];
-    text += fmt::format("{},{},{}{},{},{},{},{},{}\n", e, name_of(event.kind), event.time,
+    text += fmt::format("{},{},{}{},{},{},{},{},{},{}\n", e, name_of(event.kind), event.time,
                         axis_fields(graph, event.place), event.vertex, event.at_border ? 1 : 0,
-                        fmt::join(event.in, " "), fmt::join(event.out, " "), event.euler_change);
+                        fmt::join(event.in, " "), fmt::join(event.out, " "), event.euler_change, event.left_out);
   }
   return text;
 }

@@ -92,7 +92,7 @@ class FiveCubeChecks {
     return "";
   }
 
-  /// Of the tile of a key: whether each own vertex lies inside its face for all positions of the points on edges. Its
+  /// Checks that each own vertex of the key's tile lies inside its face for all positions of the points on edges. Its
   /// edges are critical, and all its points are in its face. If it has corners, it lies on a ray from the centre;
   /// otherwise at a mean, so that its edges must not all be in one facet of the face. Those with the same points are
   /// numbered in order.

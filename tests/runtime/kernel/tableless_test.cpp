@@ -306,7 +306,7 @@ TEST(Extract5d, NoiseIsAManifoldOpenOnlyAtTheBorder) {
     }
 }
 
-TEST(Extract5d, NoSimplexOfNoiseHasZeroSize) {
+TEST(Extract5d, NoSimplexOfAnOpenContourOfNoiseHasZeroSize) {
   for (const std::uint32_t seed : {21u, 22u, 23u}) {
     const auto image = noise<float, 5>(4, seed);
     for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle,
