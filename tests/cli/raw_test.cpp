@@ -111,8 +111,10 @@ TEST_F(Raw, RemarksOnBytesAfterTheLastSample) {
 
 TEST_F(Raw, RemarksOnBytesOfAllFilesOfASeries) {
   std::vector<std::string> files;
+  // the samples of a file are equal, and larger than those of the file before
   for (const std::size_t rest : {0U, 8U, 4U, 4U, 4U})
-    files.push_back(write("step_" + std::to_string(files.size()) + ".raw", std::string(4 * 6 + rest, '\1')));
+    files.push_back(write("step_" + std::to_string(files.size()) + ".raw",
+                          std::string(4 * 6 + rest, static_cast<char>(1 + files.size()))));
   const auto remark = [&](std::vector<std::size_t> chosen) {
     std::vector<std::string> arguments = {"info", "--json", "--raw", "3x2", "--raw-type", "float"};
     for (const std::size_t file : chosen) arguments.push_back(files[file]);
@@ -128,10 +130,10 @@ TEST_F(Raw, RemarksOnBytesOfAllFilesOfASeries) {
   EXPECT_EQ(remark({1, 2, 3}), files[1] + ", " + files[2] + ", " + files[3] + ": 4 to 8 bytes of each" + samples);
   EXPECT_EQ(remark({0, 1, 2, 3, 4}), "4 of 5 files, the first " + files[1] + ": 4 to 8 bytes of each" + samples);
   EXPECT_EQ(run_tegl({"info", "--raw", "3x2", "--raw-type", "float", "--raw-offset", "4", files[2], files[3]}).err, "");
-  EXPECT_THAT(run_tegl({"contour", "--stream", "--raw", "3x2", "--raw-type", "float", files[0], files[2], files[3],
-                        "--iso", "0", "-o", path("series.ply")})
-                  .err,
-              HasSubstr(files[2] + ", " + files[3] + ": 4 bytes of each" + samples));
+  const RunResult streamed = run_tegl({"contour", "--stream", "--raw", "3x2", "--raw-type", "float", files[0], files[2],
+                                       files[3], "--iso", "1e-37", "-o", path("series.vtkhdf")});
+  EXPECT_EQ(streamed.exit, 0) << streamed.err;
+  EXPECT_THAT(streamed.err, HasSubstr(files[2] + ", " + files[3] + ": 4 bytes of each" + samples));
 }
 
 TEST_F(Raw, NamesWhatDoesNotFitItsSizes) {

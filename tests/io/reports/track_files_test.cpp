@@ -97,7 +97,7 @@ TEST(TrackFiles, TablesAndGraphsHaveEverything) {
             "1,0,1,3,1,3,1,1,1,1,1\n"
             "2,1,1,2,1,2,1,1,1,1,0\n");
   EXPECT_THAT(track_samples_csv(fork()), HasSubstr("\n0,0,0.5,1,,0,0,0\n"));
-  EXPECT_THAT(track_events_csv(fork()), HasSubstr("\n1,split,1,0,1,0,0,1 2,1\n"));
+  EXPECT_THAT(track_events_csv(fork()), HasSubstr("\n1,split,1,0,1,0,0,1 2,1,0\n"));
   const std::string dot = track_dot(fork());
   for (const char* const arrow : {"e0 -> e1", "e1 -> e3", "e1 -> e2"}) EXPECT_THAT(dot, HasSubstr(arrow));
 }
