@@ -4,10 +4,12 @@
 #include "base/workers.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include <tbb/blocked_range.h>
+#include <tbb/cache_aligned_allocator.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -40,7 +42,13 @@ struct LoopThreads::Threads {
 
   tbb::task_arena arena;
   tbb::affinity_partitioner affinity;  ///< a thread gets the same parts as last time, which are in its caches
-  tbb::enumerable_thread_specific<std::shared_ptr<void>> own;
+#ifdef TEGL_PLAIN_THREADS
+  /// The thread sanitizer does not see that memory of TBB's allocator passes from one thread to another.
+  using Allocator = std::allocator<std::shared_ptr<void>>;
+#else
+  using Allocator = tbb::cache_aligned_allocator<std::shared_ptr<void>>;
+#endif
+  tbb::enumerable_thread_specific<std::shared_ptr<void>, Allocator> own;
 };
 
 LoopThreads::LoopThreads(unsigned threads, MakeOwn make_own)
