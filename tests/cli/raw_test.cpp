@@ -111,7 +111,7 @@ TEST_F(Raw, RemarksOnBytesAfterTheLastSample) {
 
 TEST_F(Raw, RemarksOnBytesOfAllFilesOfASeries) {
   std::vector<std::string> files;
-  // the samples of a file are equal, and larger than those of the file before
+  // the samples of a file are equal, and larger than in the file before
   for (const std::size_t rest : {0U, 8U, 4U, 4U, 4U})
     files.push_back(write("step_" + std::to_string(files.size()) + ".raw",
                           std::string(4 * 6 + rest, static_cast<char>(1 + files.size()))));

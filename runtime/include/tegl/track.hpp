@@ -176,8 +176,8 @@ requires DimensionBetween<N, 2, 5>
                                const TrackOptions& options = {});
 
 /// The graph of the tracks with `keep[track]` only, in the same order; `Track::number` keeps their original numbers.
-/// Events keep their kind, their change and the segments that remain, and count the tracks left out, with those of
-/// earlier selections; events without segments are dropped. Errors: InvalidArgument (the length of `keep`).
+/// Events keep their kind, their change and the segments that remain, and count the tracks left out, in earlier
+/// selections too; events without segments are dropped. Errors: InvalidArgument (the length of `keep`).
 [[nodiscard]] TrackGraph select_tracks(const TrackGraph& graph, const std::vector<bool>& keep);
 
 }  // namespace tegl
