@@ -5,8 +5,9 @@ in the rule side by side, and keeps their figures in bench/results/resolved.json
 
 All rules of an image run in one process, in random order and many times, so that what disturbs the machine meets all of
 them. Which pages of memory a process gets changes the times of large contours by a tenth and more, so this is repeated
-in several processes. Times are processor time on one thread, real time on several. Reported are the median and the least of the runs, and
-ratios of either; a target counts as reached where the ratio of the least times reaches it, each rule at its best.
+in several processes. Times are processor time on one thread, real time on several. Reported are the median and the least
+of the runs, and ratios of either; a target counts as reached where the ratio of the least times reaches it, each rule at
+its best.
 bench/tables.py makes tables of the figures.
 """
 
@@ -124,7 +125,8 @@ def measure_start(options) -> dict:
 def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=pathlib.Path, default=machine.ROOT / "build/release")
-    parser.add_argument("--repetitions", type=int, default=5, metavar="N", help=f"of each rule in each of {PROCESSES} processes (default: 5)")
+    parser.add_argument("--repetitions", type=int, default=5, metavar="N",
+                        help=f"of each rule in each of {PROCESSES} processes (default: 5)")
     parser.add_argument("--min-time", type=float, default=0.05, metavar="S", help="seconds of a repetition (default: 0.05)")
     parser.add_argument("--threads", default="1", metavar="LIST", help="numbers of threads, of 1 and 4 (default: 1)")
     parser.add_argument("--only", default="", metavar="TEXT", help="only images whose name has TEXT, such as 16⁴")
@@ -154,7 +156,7 @@ def main() -> None:
             row = measure(case, threads, options)
             result["rows"].append(row)
             print(f"{row['name']}, {threads}: " + ", ".join(f"{rule} {side['median_ms']:.2f} ms ({side['ratio']:.2f}×)"
-                                                          for rule, side in row["sides"].items()), flush=True)
+                                                            for rule, side in row["sides"].items()), flush=True)
     if not options.only:
         result["start"] = measure_start(options)
     print("\n".join(["", *machine.lines(result["machine"]), "", *tables.resolved(result)]))

@@ -141,12 +141,8 @@ TEST(FaultyBuilder, OfThe5CubeIsFound) {
 
 TEST(FaultyBuilder, OfTheCopyOfAVertexWithoutCornersIsFound) {
   using namespace builders::five_cube_beside;
-  FiveCubeChecks<FiveCubeBuilder, FiveKey, FiveCube> checks;
-  std::mt19937_64 random(8);
-  std::string fault;
-  for (int i = 0; i < 4000 && fault.empty(); ++i)
-    fault = checks.fault_of_own_vertices(random_five_key<FiveKey>(random, FiveKeys::squares));
-  EXPECT_THAT(fault, testing::HasSubstr("a mean in the boundary of its face"));
+  EXPECT_THAT((FiveCubeChecks<FiveCubeBuilder, FiveKey, FiveCube>().fault_of_random(FiveKeys::squares, 4000)),
+              testing::HasSubstr("a mean in the boundary of its face"));
 }
 
 TEST(FaultyBuilder, OfTheSideThatA5CubeJoinsDiffersFromTheDefinition) {

@@ -292,12 +292,15 @@ TEST(Extract5d, TubesAroundACircleAndASphereHaveTheirEulerCharacteristics) {
   EXPECT_EQ(sphere.components, 1u);
 }
 
+/// All rules but custom.
+constexpr Ambiguity kRules[] = {Ambiguity::low,    Ambiguity::high,    Ambiguity::mean,
+                                Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider};
+
 TEST(Extract5d, NoiseIsAManifoldOpenOnlyAtTheBorder) {
   const auto image = noise<float, 5>(3, 5);
   ExtractOptions options;
   for (const Triangulation triangulation : {Triangulation::compact, Triangulation::barycentric})
-    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle,
-                                      Ambiguity::squares, Ambiguity::decider}) {
+    for (const Ambiguity ambiguity : kRules) {
       options.triangulation = triangulation;
       options.ambiguity = ambiguity;
       const auto contour = extract<double>(image.view(), 0.5, options);
@@ -309,8 +312,7 @@ TEST(Extract5d, NoiseIsAManifoldOpenOnlyAtTheBorder) {
 TEST(Extract5d, NoSimplexOfAnOpenContourOfNoiseHasZeroSize) {
   for (const std::uint32_t seed : {21u, 22u, 23u}) {
     const auto image = noise<float, 5>(4, seed);
-    for (const Ambiguity ambiguity : {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle,
-                                      Ambiguity::squares, Ambiguity::decider}) {
+    for (const Ambiguity ambiguity : kRules) {
       ExtractOptions options;
       options.ambiguity = ambiguity;
       EXPECT_EQ(check(extract<double>(image.view(), 0.5, options)).degenerate_simplices, 0u)
@@ -330,8 +332,7 @@ TEST(Extract5d, CompactContoursHaveTheTopologyOfBarycentricOnesAndFewerSimplices
     EXPECT_EQ(a.euler, b.euler);
   };
   ExtractOptions options;
-  for (const Ambiguity ambiguity :
-       {Ambiguity::low, Ambiguity::high, Ambiguity::mean, Ambiguity::saddle, Ambiguity::squares, Ambiguity::decider}) {
+  for (const Ambiguity ambiguity : kRules) {
     options.ambiguity = ambiguity;
     expect_same_topology(noise<float, 5>(3, 14), 0.5, options, 0.55);
     expect_same_topology(noise<float, 5>(4, 15), 0.93, options, 0.55);
