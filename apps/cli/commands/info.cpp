@@ -107,8 +107,8 @@ std::string_view direction_name(const ImageInfo& info, std::size_t axis) {
   }
 }
 
-/// The unit of the coordinates along an axis: that of the world's coordinates that differ along it, which may be those
-/// of another axis; empty if these have several units.
+/// The unit of the coordinates along an axis. Another axis's coordinates may differ along it, so the unit belongs to the
+/// world's coordinates that differ; empty if these have several units.
 std::string unit_along(const Description& description, std::size_t at) {
   if (description.linear.empty()) return description.axes[at].unit;
   constexpr double kRounding = 1e-6;  // of the largest entry

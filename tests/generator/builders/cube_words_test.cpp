@@ -48,11 +48,11 @@ TEST(CubeWords, AnyChangedBitOfAnyWordIsFound) {
 TEST(CubeWords, OtherWordsAreFound) {
   const TesseractArrays& arrays = made_arrays();
   std::vector<CubeWords> made = make_cube_words(arrays);
-  // those of another content
+  // words with another content
   CubeWords other = made[0];
   other.content = CubeWords::Content::by_centre;
   EXPECT_FALSE(is_certified(other, arrays));
-  // those of the other triangulation, whose lists have other vertices
+  // words of the other triangulation, whose lists have other vertices
   other = made[0];
   other.triangulation = Triangulation::compact;
   EXPECT_FALSE(is_certified(other, arrays));

@@ -73,8 +73,8 @@ class FiveCubeChecks {
     for (unsigned f = 0; f < 10; ++f) tesseract_[f] = find(f % 2 << f / 2, 31u ^ 1u << f / 2);
   }
 
-  /// Builds the tile of a key: the certificate, the components that its facets join, those of the general builder, and
-  /// the points of own vertices.
+  /// Builds the tile of a key. Checks the points of own vertices and the certificate, and compares the components that
+  /// its facets join with the general builder's.
   std::string fault_of(const Key& key) {
     const auto contour = builder_.build(key);
     if (std::string fault = fault_of_own(key, contour); !fault.empty()) return fault;
